@@ -8,11 +8,14 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 21] = [
+const TARGETS: [(&str, Target); 24] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
     ("debugging", lang_diagram::fuzz::debugging),
+    ("dataflow", flow),
+    ("flow", lang_dataflow::fuzz::source),
+    ("flowsave", lang_dataflow::fuzz::reader),
     ("constraints", lang_constraint::fuzz::constraints),
     ("dcml", lang_dcml::fuzz::dcml),
     ("recording", journal::fuzz::recording),
@@ -31,6 +34,11 @@ const TARGETS: [(&str, Target); 21] = [
     ("pattern", config::fuzz::fuzz_pattern),
     ("picture", sim::arena::floor::fuzz::picture),
 ];
+
+/// Whether a program of these bytes may run is nothing to libFuzzer.
+fn flow(bytes: &[u8]) {
+    lang_dataflow::fuzz::program(bytes);
+}
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {
     let wanted = std::env::var("TRIK_FUZZ_TARGET").unwrap_or_default();

@@ -6,6 +6,7 @@
 // A thing, part or record that is forgotten must not compile.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod dataflow;
 pub mod debugged;
 pub mod hands;
 pub mod json;
@@ -23,6 +24,7 @@ pub mod trajectory;
 pub mod trial;
 mod words;
 
+pub use dataflow::Dataflow;
 pub use lint::lint;
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program, Running, Spot};

@@ -18,7 +18,7 @@ mod russian;
 mod waits;
 
 /// Folders of our crates, those that the workspace has as members.
-pub(crate) const CRATES: [&str; 24] = [
+pub(crate) const CRATES: [&str; 25] = [
     "bridge",
     "config",
     "converter",
@@ -27,6 +27,7 @@ pub(crate) const CRATES: [&str; 24] = [
     "frame",
     "journal",
     "lang/constraint",
+    "lang/dataflow",
     "lang/dcml",
     "lang/diagram",
     "lang/editor",
@@ -242,7 +243,8 @@ fn sources_and_documents_are_ascii() {
     // Messages for pupils, in Russian too.
     let speaks_russian = ["lang", "sim/src", "trik/src"].map(|part| root().join(part));
     // A row of a block or of a reading has its words in both languages.
-    let blocks = root().join("lang/diagram/src/blocks");
+    let blocks =
+        ["lang/diagram/src/blocks", "lang/dataflow/src/blocks"].map(|part| root().join(part));
     let readings = root().join("lang/diagram/src/generate/readings.rs");
     // What a new task tells pupils.
     let task = root().join("trik/src/task/README.ru.md");
@@ -251,7 +253,7 @@ fn sources_and_documents_are_ascii() {
     // Pages that pupils and teachers read, in Russian.
     let documents = root().join("docs/ru");
     let is_words = |path: &Path| {
-        path.starts_with(&blocks)
+        blocks.iter().any(|part| path.starts_with(part))
             || path.starts_with(&documents)
             || path == task
             || path == page
@@ -458,6 +460,7 @@ const EXHAUSTIVE: &[&str] = &[
     "ev3dev/src/lib.rs",
     "journal/src/lib.rs",
     "lang/constraint/src/lib.rs",
+    "lang/dataflow/src/lib.rs",
     "lang/dcml/src/generate.rs",
     "lang/diagram/src/lib.rs",
     "lang/expr/src/lib.rs",

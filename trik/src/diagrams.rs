@@ -3,6 +3,7 @@
 //! Owns nothing else. What a diagram means is known in `lang-diagram` alone; `save` is the way of a save from its file to
 //! there, `report` puts its problems into lines, `words` has what is said here.
 
+pub(crate) mod flow;
 pub(crate) mod generate;
 pub(crate) mod lint;
 mod report;

@@ -1,7 +1,8 @@
 //! Diagrams of TRIK Studio: the machine of crate `lang` with the tree as its robot.
 //!
 //! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
-//! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes.
+//! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes;
+//! `flow` runs programs of data flow.
 //! What blocks mean is known in `lang` alone.
 
 // A request, a message or a command that is forgotten must not pass in silence.
@@ -9,6 +10,7 @@
 
 mod asking;
 mod debugging;
+mod flow;
 mod live;
 mod motors;
 mod readings;
@@ -20,6 +22,8 @@ use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
 use crate::host::{Host, Incoming};
 use crate::{limits, settings};
 use debugging::Debugging;
+use lang_dataflow::project::Project as Flow;
+use lang_dataflow::read::{Language, language};
 use lang_diagram::lower::{World, lower};
 use lang_diagram::machine::{Machine, Options, STEP_MS};
 use lang_diagram::read;
@@ -63,6 +67,14 @@ pub fn locale(name: &str) -> Locale {
     }
 }
 
+/// What a file has.
+enum Loaded {
+    /// A machine with diagrams of control flow.
+    Diagram(Box<Machine>),
+    /// A data-flow program.
+    Flow(Rc<lang_dataflow::program::Program>),
+}
+
 impl Engine for Diagram {
     fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome {
         let (path, is_debugged) = match start {
@@ -70,9 +82,20 @@ impl Engine for Diagram {
             Start::Debugged(path) => (path, true),
             Start::Script(_) | Start::Direct => return Err(Failure::NoFile),
         };
-        let mut diagram = Debugging::new(self.load(&path, host)?, self.locale);
         let mut robot = Robot::new(brick, host);
         let mut watch = Watch::new(self.locale);
+        let machine = match self.load(&path, host)? {
+            Loaded::Diagram(machine) => *machine,
+            Loaded::Flow(_) if is_debugged => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let why = NoDiagram::Problems(vec![flow::NOT_YET.to_owned()]);
+                return Err(Failure::Diagram(name.into_owned(), why));
+            }
+            Loaded::Flow(program) => {
+                return flow::run(program, &mut robot, &mut watch, host);
+            }
+        };
+        let mut diagram = Debugging::new(machine, self.locale);
         if is_debugged {
             diagram.stop_first(&mut robot, &mut watch);
         }
@@ -89,12 +112,24 @@ impl Engine for Diagram {
 }
 
 impl Diagram {
-    /// A machine with the program of a save; tells on the way what is wrong with it.
-    fn load(&self, path: &Path, host: &Host) -> Result<Machine, Failure> {
+    /// A machine with the program of a save, or a data-flow program; tells on the way what is wrong with it.
+    fn load(&self, path: &Path, host: &Host) -> Result<Loaded, Failure> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
         let bytes = read_save(path).map_err(failed)?;
+        if path
+            .extension()
+            .is_some_and(|ending| ending == flow::ENDING)
+        {
+            let project = flow::of_text(bytes, self.locale).map_err(failed)?;
+            return self.ready((&project, &[]), host).map_err(failed);
+        }
         let opened = opened(&bytes, self.locale).map_err(failed)?;
+        if language(&opened.save) == Language::Dataflow {
+            let (project, mut problems) = lang_dataflow::read::project(&opened.save);
+            problems.splice(0..0, opened.problems);
+            return self.ready((&project, &problems), host).map_err(failed);
+        }
         let lowered = lower(&opened.project, World::Robot)
             .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
@@ -102,13 +137,28 @@ impl Diagram {
             // Faulty blocks tell their fault when they are reached; until then it is a warning.
             let _ = host.info(&problem.in_locale(self.locale));
         }
-        Ok(Machine::new(
-            Rc::new(lowered.program),
-            Options {
-                compat: self.compat,
-                ..Options::of(World::Robot)
-            },
-        ))
+        let options = Options {
+            compat: self.compat,
+            ..Options::of(World::Robot)
+        };
+        let machine = Machine::new(Rc::new(lowered.program), options);
+        Ok(Loaded::Diagram(Box::new(machine)))
+    }
+
+    /// A data-flow program that has nothing wrong with it; warnings are told.
+    fn ready(&self, read: (&Flow, &[Problem]), host: &Host) -> Result<Loaded, NoDiagram> {
+        let (project, problems) = read;
+        let checked = lang_dataflow::check::check(project);
+        let is_error = |one: &Problem| one.severity == Severity::Error;
+        if checked.has_errors() || problems.iter().any(is_error) {
+            let all: Vec<Problem> = problems.iter().chain(&checked.problems).cloned().collect();
+            return Err(errors_among(&all, self.locale));
+        }
+        let warnings = problems.iter().chain(&checked.problems);
+        for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
+            let _ = host.info(&problem.in_locale(self.locale));
+        }
+        Ok(Loaded::Flow(Rc::new(checked.program)))
     }
 }
 
@@ -189,7 +239,7 @@ fn hear(
     host: &Host,
 ) -> io::Result<()> {
     match message {
-        Incoming::Mail(_, text) => robot.post(text),
+        Incoming::Mail(sender, text) => robot.post(sender, text),
         Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),

@@ -227,6 +227,8 @@ pub const DETECT_MS: u64 = 20_000;
 pub const DIAGRAM_COMMANDS: usize = 16;
 /// Messages of other robots that a diagram has not fetched.
 pub const DIAGRAM_MAIL: usize = 256;
+/// Bytes of a file that a block of a data-flow program reads.
+pub const DIAGRAM_FILE_BYTES: u64 = 1 << 20;
 /// Milliseconds that a diagram waits for the answer of a person.
 pub const QUESTION_MS: u64 = 120_000;
 /// Characters of a question, its variable and its default.

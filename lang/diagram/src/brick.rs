@@ -248,6 +248,16 @@ pub trait Brick {
         None
     }
 
+    /// The next message of another robot, with the number of who sent it if that is known.
+    fn letter(&mut self) -> Option<(Option<i32>, String)> {
+        self.mail().map(|text| (None, text))
+    }
+
+    /// What is in a file of the user; nothing if there is none, or if this robot keeps no files.
+    fn contents(&mut self, _file: &str) -> Option<String> {
+        None
+    }
+
     /// Asks a person, again and again until there is an answer.
     fn ask(&mut self, _question: Question<'_>) -> Answer {
         Answer::Cancelled

@@ -4,7 +4,7 @@
 //! save's version or later, so a save from between two versions gets the later steps only.
 
 use super::objects::{self, Kind, Object, Objects};
-use super::read::{Meta, VERSION, VERSION_KEY};
+use super::read::{DATAFLOW_VERSION_KEY, Meta, VERSION, VERSION_KEY};
 use super::version::Version;
 use lang_text::problem::{Problem, Severity};
 use lang_text::xml::{self, Element, Node};
@@ -46,6 +46,10 @@ pub(super) fn convert(
     problems: &mut Vec<Problem>,
 ) -> Result<(), Problem> {
     let Some(text) = meta.keys.get(VERSION_KEY).cloned() else {
+        if meta.keys.contains_key(DATAFLOW_VERSION_KEY) {
+            // A save with diagrams of data flow alone, of which there is one version.
+            return Ok(());
+        }
         problems.push(in_meta(Problem::warning(words::no_version())));
         return Ok(());
     };

@@ -20,6 +20,8 @@ pub use meta::{BLOBS_FILE, META_FILE, Meta, TEMPLATES, WORLD_FILE};
 
 /// Key of a save's version.
 pub const VERSION_KEY: &str = "RobotsMetamodelVersion";
+/// Key of the version of the language of data flow, where a save has such diagrams.
+pub const DATAFLOW_VERSION_KEY: &str = "RobotsDataFlowMetamodelVersion";
 /// The version of what is read here and written.
 pub const VERSION: &str = "2024.1.0";
 

@@ -34,7 +34,7 @@ pub struct Save {
 
 impl Save {
     /// A save that is made and not read: all of it is new.
-    pub(super) fn made(objects: Objects, meta: Meta) -> Self {
+    pub fn made(objects: Objects, meta: Meta) -> Self {
         Self {
             archive: Archive {
                 container: Container::Zip,

@@ -95,6 +95,52 @@ impl Source {
         }
     }
 
+    /// Reads a text in which some names are somebody's own: what `own` gives for a name stands for it, everywhere but where
+    /// a function is called. Such a name is made by [`names::own_name`], so that no text can say it, and messages show it
+    /// as it is written.
+    pub fn with_own_names(
+        text: &str,
+        wanted: Wanted,
+        own: &dyn Fn(&str) -> Option<Rc<str>>,
+    ) -> Self {
+        let mut source = Self::new(text, wanted);
+        for node in &mut source.tree.nodes {
+            if let tree::Node::Name(name) = node
+                && let Some(other) = own(name)
+            {
+                *name = other;
+            }
+        }
+        source
+    }
+
+    /// Forgets what is known of types: the next [`analyse`] begins anew, as after [`Names::retype`] of a name in it.
+    pub fn reread(&mut self) {
+        self.reading = 0;
+        self.good_at = None;
+    }
+
+    /// Every name in the text, as often as it is there; functions that it calls among them.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.tree.nodes.iter().filter_map(|node| match node {
+            tree::Node::Name(name) => Some(&**name),
+            tree::Node::Nil
+            | tree::Node::Bool(_)
+            | tree::Node::Int(_)
+            | tree::Node::Float(_)
+            | tree::Node::Text(_)
+            | tree::Node::RawText(_)
+            | tree::Node::Unary(..)
+            | tree::Node::Binary(..)
+            | tree::Node::Index { .. }
+            | tree::Node::Call { .. }
+            | tree::Node::Method { .. }
+            | tree::Node::Table { .. }
+            | tree::Node::Assign { .. }
+            | tree::Node::Block(_) => None,
+        })
+    }
+
     /// The text.
     pub fn text(&self) -> &str {
         &self.text

@@ -37,6 +37,24 @@ pub(super) struct Entry {
     pub(super) declared: Option<Declaration>,
 }
 
+/// What divides a name from whose own it is; no text has it in a name.
+const OWNER: char = '@';
+
+/// The name that stands for `name` where it belongs to the owner of this number alone.
+pub fn own_name(name: &str, owner: u32) -> Rc<str> {
+    format!("{name}{OWNER}{owner}").into()
+}
+
+/// A name as the text has it.
+pub fn written(name: &str) -> &str {
+    name.split(OWNER).next().unwrap_or(name)
+}
+
+/// Whether a name is somebody's own.
+pub fn is_own(name: &str) -> bool {
+    name.contains(OWNER)
+}
+
 /// All names of a project.
 #[derive(Clone, Debug)]
 pub struct Names {
@@ -44,6 +62,8 @@ pub struct Names {
     pub(super) entries: Vec<Entry>,
     pub(super) types: Types,
     compat: Compat,
+    /// Whether what is no number is an error where a number is needed, instead of 0.
+    pub(super) is_strict: bool,
     /// Whether an integer variable becomes a float one by an assignment; not in the mode of static languages.
     pub(super) widens: bool,
     epoch: u32,
@@ -61,6 +81,7 @@ impl Names {
             entries: Vec::new(),
             types: Types::new(compat == Compat::Fixed),
             compat,
+            is_strict: false,
             widens: true,
             epoch: 0,
             readings: 0,
@@ -87,6 +108,15 @@ impl Names {
             names.reserve(sensor.name, Kind::Sensor(index), of);
         }
         names
+    }
+
+    /// The same, where an element of a table that is no number is an error instead of 0, if a number is needed.
+    #[must_use]
+    pub fn strict(self) -> Self {
+        Self {
+            is_strict: true,
+            ..self
+        }
     }
 
     /// Makes a sensor variable a name that nobody knows yet, because the robot has no such sensor.
@@ -240,6 +270,25 @@ impl Names {
             self.changed();
         }
         Some(slot)
+    }
+
+    /// Gives a variable the type of a value, whatever it was before: of a name that is somebody's own, and gets values from
+    /// outside. A variable of floats stays one when a whole number comes. Tells whether that changed anything.
+    pub fn retype(&mut self, slot: Slot, value: &Value) -> bool {
+        let of = self.type_of_value(value, 0);
+        let Some(entry) = self.entries.get_mut(slot as usize) else {
+            return false;
+        };
+        let had = self.types.get(entry.variable);
+        let is_same =
+            had == Possible::one(of) || (had == Possible::one(Type::Float) && of == Type::Int);
+        if entry.declared.is_some() && is_same {
+            return false;
+        }
+        entry.declared = Some(ROBOT);
+        self.types.set(entry.variable, Possible::one(of));
+        self.changed();
+        true
     }
 
     fn type_of_value(&mut self, value: &Value, depth: u16) -> Type {

@@ -119,7 +119,23 @@ impl<'a> Run<'a> {
             | Op::Block(_)
             | Op::Assign(..)
             | Op::AssignElement(..)
-            | Op::Broken(_) => self.value(id).to_float(),
+            | Op::Broken(_) => {
+                let value = self.value(id);
+                self.look_at_number(&value, id);
+                value.to_float()
+            }
+        }
+    }
+
+    /// Where names are strict, what is no number is an error and not 0.
+    fn look_at_number(&mut self, value: &Value, id: Id) {
+        let is_number = match value {
+            Value::Int(_) | Value::Float(_) | Value::Bool(_) => true,
+            Value::Nil | Value::Text(_) | Value::Unset | Value::List(_) => false,
+        };
+        if self.names.is_strict && !is_number && self.faults.is_empty() {
+            let what = value.brief();
+            self.fault(Reason::NoNumber(what), id);
         }
     }
 
@@ -190,7 +206,11 @@ impl<'a> Run<'a> {
             | Op::Block(_)
             | Op::Assign(..)
             | Op::AssignElement(..)
-            | Op::Broken(_) => return self.value(id).to_int(),
+            | Op::Broken(_) => {
+                let value = self.value(id);
+                self.look_at_number(&value, id);
+                return value.to_int();
+            }
         };
         match operator {
             Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide | Binary::Power => {
@@ -352,6 +372,7 @@ impl<'a> Run<'a> {
             let left = self.number(left);
             return numbers(left, self.number(right));
         }
+        let at = left;
         let (left, right) = (self.value(left), self.value(right));
         match (&left, &right) {
             (Value::Text(_) | Value::Unset, Value::Text(_) | Value::Unset) => {
@@ -366,7 +387,11 @@ impl<'a> Run<'a> {
                 | Value::Unset
                 | Value::List(_),
                 _,
-            ) => numbers(left.to_float(), right.to_float()),
+            ) => {
+                self.look_at_number(&left, at);
+                self.look_at_number(&right, at);
+                numbers(left.to_float(), right.to_float())
+            }
         }
     }
 

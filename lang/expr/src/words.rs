@@ -3,6 +3,7 @@
 //! English sentences begin as the real program's do, so that its reports can be compared; what to do follows.
 
 use crate::limits;
+use crate::names::written;
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -81,6 +82,8 @@ pub enum Reason {
     Uninitialized(String),
     /// An index below 0.
     NegativeIndex,
+    /// What should be a number is none; only where names are strict.
+    NoNumber(String),
     /// The index of a table is not known to be a number.
     IndexNotNumber,
     /// Elements of something that has no name.
@@ -161,6 +164,7 @@ impl Reason {
             | Self::RandomOfNothing
             | Self::Uninitialized(_)
             | Self::NegativeIndex
+            | Self::NoNumber(_)
             | Self::IndexNotNumber
             | Self::IndexOfValue
             | Self::KeyNotNumber
@@ -211,8 +215,8 @@ impl Reason {
             Self::CannotDeduce(kinds) => {
                 format!("Can not deduce type, expression can be of following types: {kinds}")
             }
-            Self::Undeclared(name) => format!("Undeclared identifier: {}", short(name)),
-            Self::ReadOnly(name) => format!("Variable {} is read-only", short(name)),
+            Self::Undeclared(name) => format!("Undeclared identifier: {}", short(written(name))),
+            Self::ReadOnly(name) => format!("Variable {} is read-only", short(written(name))),
             Self::IndirectCall => "Indirect function calls are not supported".into(),
             Self::UnknownFunction => "Unknown function".into(),
             Self::TooManyArguments(count) => format!("Too many parameters, {count} expected"),
@@ -224,10 +228,11 @@ impl Reason {
             Self::Uninitialized(name) => {
                 format!(
                     "Seems like accessing an uninitialized variable {}",
-                    short(name)
+                    short(written(name))
                 )
             }
             Self::NegativeIndex => "Negative index for a table".into(),
+            Self::NoNumber(what) => format!("A number is needed, and this is {}", short(what)),
             Self::IndexNotNumber => {
                 "Currently interpreter allows only tables denoted by identifier \
                                      and by integer expression index, as in 'a[1 + 2][3]'"
@@ -300,6 +305,7 @@ impl Reason {
             | Self::NotAnalysed
             | Self::DivisionByZero
             | Self::NegativeIndex
+            | Self::NoNumber(_)
             | Self::IndexNotNumber
             | Self::IndexOfValue
             | Self::KeyNotNumber
@@ -349,11 +355,11 @@ impl Reason {
                 format!("Не могу вывести тип, это выражение может быть следующих типов: {}", kinds_in_russian(kinds))
             }
             Self::Undeclared(name) => {
-                format!("Неизвестная переменная: {}. Сначала дайте ей значение.", short(name))
+                format!("Неизвестная переменная: {}. Сначала дайте ей значение.", short(written(name)))
             }
             Self::ReadOnly(name) => format!(
                 "Переменную {} менять нельзя: она принадлежит роботу. Выберите другое имя.",
-                short(name)
+                short(written(name))
             ),
             Self::IndirectCall => "Вызвать можно только функцию по имени".into(),
             Self::UnknownFunction => "Неизвестная функция. Есть функции abs, acos, asin, atan, atan2, ceil, \
@@ -371,6 +377,7 @@ impl Reason {
             | Self::RandomOfNothing
             | Self::Uninitialized(_)
             | Self::NegativeIndex
+            | Self::NoNumber(_)
             | Self::IndexNotNumber
             | Self::IndexOfValue
             | Self::KeyNotNumber
@@ -387,9 +394,10 @@ impl Reason {
             Self::RandomOfNothing => "random(0) не из чего выбирать. Нужно хотя бы 1.".into(),
             Self::Uninitialized(name) => format!(
                 "Обращение к неинициализированной переменной {}. Присвойте ей значение до первого использования.",
-                short(name)
+                short(written(name))
             ),
             Self::NegativeIndex => "Отрицательный номер элемента таблицы".into(),
+            Self::NoNumber(what) => format!("Нужно число, а это {}", short(what)),
             Self::IndexNotNumber => {
                 "Номер элемента таблицы должен быть числом, как в «a[1 + 2][3]»".into()
             }

@@ -5,7 +5,7 @@
 use super::{none, sources};
 
 /// Crates that are held to it.
-const NAMED: [&str; 22] = [
+const NAMED: [&str; 23] = [
     "bridge",
     "config",
     "converter",
@@ -14,6 +14,7 @@ const NAMED: [&str; 22] = [
     "frame",
     "journal",
     "lang/constraint",
+    "lang/dataflow",
     "lang/dcml",
     "lang/diagram",
     "lang/editor",

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 /// Crates whose limits all stand in their `limits.rs`: all but `filters`, whose numbers are ranges of parameters, which
 /// stand with the equations that they are for.
-const LIMITED: [&str; 21] = [
+const LIMITED: [&str; 22] = [
     "bridge",
     "config",
     "converter",
@@ -15,6 +15,7 @@ const LIMITED: [&str; 21] = [
     "frame",
     "journal",
     "lang/constraint",
+    "lang/dataflow",
     "lang/dcml",
     "lang/diagram",
     "lang/editor",
@@ -31,7 +32,7 @@ const LIMITED: [&str; 21] = [
     "trikfs",
 ];
 /// Crates in which numbers of errors stand in one place, and no function gives a text as an error.
-const BLAMING: [&str; 19] = [
+const BLAMING: [&str; 20] = [
     "config",
     "converter",
     "ev3dev",
@@ -39,6 +40,7 @@ const BLAMING: [&str; 19] = [
     "frame",
     "journal",
     "lang/constraint",
+    "lang/dataflow",
     "lang/dcml",
     "lang/diagram",
     "lang/editor",

@@ -293,8 +293,8 @@ fn tasks(folder: &Path, args: &CheckArgs, passed: &mut Passed) -> Result<Vec<Tas
 fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<Solution>, Error> {
     let has_worlds = has_tasks || !args.field.is_empty() || args.task.is_some();
     let endings: &[&str] = match has_worlds {
-        true => &["qrs", "js", "py"],
-        false => &["qrs"],
+        true => &["qrs", "flow", "js", "py"],
+        false => &["qrs", "flow"],
     };
     let mut all = Vec::new();
     for path in &args.paths {

@@ -118,8 +118,8 @@ pub(super) fn bound(jobs: &[Job]) -> Result<(), Error> {
 /// The endings of solutions: programs with text need a world from elsewhere.
 fn endings(args: &CheckArgs) -> &'static [&'static str] {
     match args.field.is_empty() && args.task.is_none() {
-        true => &["qrs"],
-        false => &["qrs", "js", "py"],
+        true => &["qrs", "flow"],
+        false => &["qrs", "flow", "js", "py"],
     }
 }
 

@@ -10,6 +10,7 @@ use super::row::Row;
 use super::script::{self, Language, Setup};
 use super::verdict::Verdict;
 use super::words;
+use crate::diagrams::flow::{self, Flow};
 use crate::diagrams::save::{Unreadable, open};
 use crate::error::Error;
 use crate::input;
@@ -260,6 +261,8 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
 #[derive(Default)]
 struct Solution {
     project: Project,
+    /// The data-flow program that is run instead of a diagram.
+    flow: Option<Flow>,
     script: Option<(Language, String)>,
     /// Where the program comes from.
     file: PathBuf,
@@ -277,10 +280,10 @@ impl Solution {
         }
         let script = args.script.as_deref();
         let own = Language::of(path);
-        let (project, script) = match own {
-            Some(_) => (Project::default(), script.or(Some(path))),
+        let (project, flow, script) = match own {
+            Some(_) => (Project::default(), None, script.or(Some(path))),
             None => {
-                let opened = open(path).map_err(|why| match why {
+                let opened = flow::open(path).map_err(|why| match why {
                     Unreadable::File(why) => {
                         let why = why.in_locale(args.language);
                         vec![format!("{}: {why}", shown(path))].into()
@@ -289,7 +292,11 @@ impl Solution {
                         Refused::broken(lines(path, &problems, args.language))
                     }
                 })?;
-                (opened.project, script)
+                match opened {
+                    flow::Program::Diagram(opened) => (opened.project, None, script),
+                    flow::Program::Flow(flow, opened) => (opened.project, Some(flow), script),
+                    flow::Program::Text(flow) => (Project::default(), Some(flow), script),
+                }
             }
         };
         let script = match script {
@@ -312,6 +319,7 @@ impl Solution {
         let file = args.script.as_deref().unwrap_or(path).to_owned();
         Ok(Self {
             project,
+            flow,
             script,
             file,
         })
@@ -329,13 +337,18 @@ impl Solution {
             self.project.blobs = None;
         }
         let mut given = job.given.as_ref().or(args.task.as_ref());
-        if self.project.world.is_none() && self.script.is_some() {
-            let Some(path) = given.take() else {
-                let why = words::no_world(args.language);
-                return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
-            };
-            // A program with text has no world of its own: it runs in the save that was given out, as it was.
-            self.project = save(path, args)?;
+        let is_text = self.script.is_some() || flow::is_text(&job.solution);
+        if self.project.world.is_none() && is_text {
+            match given.take() {
+                // A program with text has no world of its own: it runs in the save that was given out, as it was.
+                Some(path) => self.project = save(path, args)?,
+                // A data-flow program may as well run in an empty one, as a diagram without a world does.
+                None if self.script.is_none() => {}
+                None => {
+                    let why = words::no_world(args.language);
+                    return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+                }
+            }
         }
         let project = &self.project;
         // A diagram without a world runs in an empty one.
@@ -380,6 +393,13 @@ impl Solution {
                 wall_seconds: args.wall_limit,
             };
             return script::open(*language, text, given).map_err(|why| line(why).into());
+        }
+        if let Some(flow) = &self.flow {
+            let refused = |problems: Vec<Problem>| {
+                Refused::broken(lines(&self.file, &problems, args.language))
+            };
+            let program = flow.ready().map_err(refused)?;
+            return Ok(Box::new(judge::Dataflow::new(program)));
         }
         let diagram = Diagram::new(self.diagram(task, args)?);
         Ok(Box::new(match args.explain {
@@ -427,6 +447,10 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
             ..settings(args).map_err(line)?
         };
         let mut solution = Solution::read(&job.solution, args)?;
+        if solution.flow.is_some() {
+            let why = "data-flow programs have no debugger yet: trik check --explain tells where they ended";
+            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+        }
         if solution.script.is_some() {
             let why = "only diagrams have blocks to stop at; a program in Python is debugged by its own tools";
             return Err(vec![format!("{}: {why}", shown(&job.solution))].into());

@@ -4,6 +4,7 @@
 //! Owns the order of files, the summary and the exit code, and what is a world: a file that begins with a tag, and the
 //! world model of a save. What is wrong is found in `lang` and by the judge in `sim`.
 
+use super::flow::{self, Flow};
 use super::report::{Count, Reporter};
 use super::save::{Unreadable, bytes};
 use super::words;
@@ -26,7 +27,8 @@ const WORLD: &str = "worldModel";
 /// What `trik lint` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct LintArgs {
-    /// Diagrams, files NAME.qrs, with the worlds in them; and worlds, files NAME.xml.
+    /// Diagrams, files NAME.qrs, with the worlds in them; data-flow programs as text, files NAME.flow; and worlds, files
+    /// NAME.xml.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Language of messages: en or ru.
@@ -56,12 +58,20 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
         let mut opened = match open(file) {
             Ok(Content::Diagram(opened)) => *opened,
             Ok(Content::World(text)) => {
-                if args.recover.is_some() {
-                    let why = "this is a world, and --recover is for diagrams";
-                    return Err(Refusal::new(format!("{}: {why}", named(file))));
-                }
+                refuse_recovery(args, file, "a world")?;
                 let reporter = Reporter::new(file, None, args.language);
                 report(&reporter, world(&text), &mut count, args)?;
+                continue;
+            }
+            Ok(Content::Flow(flow, save)) => {
+                refuse_recovery(args, file, "a data-flow program")?;
+                let reporter = Reporter::new(file, None, args.language);
+                let mut problems = save
+                    .as_ref()
+                    .map_or_else(Vec::new, |save| save.problems.clone());
+                problems.extend(flow.found());
+                problems.extend(save.map_or_else(Vec::new, |save| world_of(&save.project)));
+                report(&reporter, problems, &mut count, args)?;
                 continue;
             }
             Err(why) => {
@@ -99,9 +109,22 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     })
 }
 
+/// Only diagrams lose blocks that can be put back.
+fn refuse_recovery(args: &LintArgs, file: &Path, is: &str) -> Result<(), Refusal> {
+    match args.recover {
+        None => Ok(()),
+        Some(_) => Err(Refusal::new(format!(
+            "{}: this is {is}, and --recover is for diagrams",
+            named(file)
+        ))),
+    }
+}
+
 /// What a file is.
 enum Content {
     Diagram(Box<Opened>),
+    /// A data-flow program, with the save that it is of.
+    Flow(Flow, Option<Box<Opened>>),
     /// The text of a world model.
     World(String),
 }
@@ -115,10 +138,17 @@ fn open(path: &Path) -> Result<Content, Unreadable> {
     if is_program(path) {
         return Err(Unreadable::File(words::is_program()));
     }
+    if flow::is_text(path) {
+        return Ok(Content::Flow(flow::of_text(bytes)?, None));
+    }
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
     if text.trim_ascii_start().first() != Some(&b'<') {
         let opened = read::read(&bytes).map_err(Unreadable::Save)?;
-        return Ok(Content::Diagram(Box::new(opened)));
+        return Ok(match flow::of_save(opened) {
+            flow::Program::Diagram(opened) => Content::Diagram(opened),
+            flow::Program::Flow(flow, save) => Content::Flow(flow, Some(save)),
+            flow::Program::Text(flow) => Content::Flow(flow, None),
+        });
     }
     let text = String::from_utf8(bytes)
         .map_err(|error| Unreadable::File(words::no_utf_8(error.utf8_error().valid_up_to())))?;

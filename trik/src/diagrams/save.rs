@@ -28,7 +28,16 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
 
 /// Reads a save of which nothing else can be said if it cannot be read.
 pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
-    open(path).map_err(|why| Refusal {
+    must(open(path), path, locale)
+}
+
+/// What was read, or why nothing else can be said of the file.
+pub(crate) fn must<T>(
+    read: Result<T, Unreadable>,
+    path: &Path,
+    locale: Locale,
+) -> Result<T, Refusal> {
+    read.map_err(|why| Refusal {
         lines: match why {
             Unreadable::File(why) => {
                 vec![format!("trik: {}: {}", named(path), why.in_locale(locale))]

@@ -2,23 +2,23 @@
 //!
 //! Owns which diagram of a project is meant. What is shown of it is the business of `lang`.
 
+use super::flow::{self, Flow};
 use super::report::Reporter;
-use super::save::must_open;
+use super::save::must;
 use crate::language;
 use crate::limits;
 use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal};
 use crate::terminal::harmless;
 use clap::Args;
-use lang_diagram::project::Project;
 use lang_diagram::show::{outline::outline, picture::picture};
 use lang_text::problem::Locale;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What `trik show` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ShowArgs {
-    /// The diagram, a file NAME.qrs.
+    /// The diagram, a file NAME.qrs, or a data-flow program as text, a file NAME.flow.
     pub file: PathBuf,
     /// Write a picture into a new file; - is standard output.
     #[arg(long, value_name = "OUT.svg")]
@@ -26,6 +26,9 @@ pub(crate) struct ShowArgs {
     /// Print the program as sentences, as without this option.
     #[arg(long, conflicts_with = "svg")]
     pub text: bool,
+    /// Print a data-flow program in its textual form, which all commands read from a file NAME.flow.
+    #[arg(long, conflicts_with_all = ["svg", "text"])]
+    pub source: bool,
     /// The diagram with this name in the file [default: the main one]. Sentences are those of the diagram and of the
     /// subprograms that it calls.
     #[arg(long, value_name = "NAME")]
@@ -43,19 +46,19 @@ pub(crate) struct ShowArgs {
 /// # Errors
 /// The save cannot be read, it is not clear what the diagram does, or the picture cannot be written.
 pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
-    let mut opened = must_open(&args.file, args.language)?;
-    let chosen = choose(&opened.project, args.diagram.as_deref())?;
+    let mut opened = match must(flow::open(&args.file), &args.file, args.language)? {
+        flow::Program::Diagram(opened) => opened,
+        flow::Program::Flow(flow, _) | flow::Program::Text(flow) => return show_flow(args, flow),
+    };
+    if args.source {
+        let why = "--source is for data-flow programs, and this is a diagram of control flow";
+        return Err(Refusal::new(why));
+    }
+    let names = opened.project.diagrams.iter().map(|one| &*one.name);
+    let chosen = choose(names, opened.project.main, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {
-        let output = Output {
-            path: Some(svg),
-            force: args.force,
-            source: &args.file,
-            locale: args.language,
-        };
-        output.refuse_present()?;
         let picture = picture(&opened.project.diagrams[chosen], args.language);
-        output.write(picture.as_bytes())?;
-        return Ok(0);
+        return write_picture(args, svg, &picture);
     }
     // The program begins there.
     opened.project.main = Some(chosen);
@@ -73,18 +76,51 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     Ok(0)
 }
 
-/// The diagram with a name, or else the main one.
-fn choose(project: &Project, name: Option<&str>) -> Result<usize, Refusal> {
-    let Some(name) = name else {
-        return project
-            .main
-            .ok_or_else(|| Refusal::new("there is no diagram in this project"));
+/// Shows a data-flow program.
+fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
+    let project = flow.project;
+    if args.source {
+        standard(lang_dataflow::text::write(&project).as_bytes())?;
+        return Ok(0);
+    }
+    let names = project.diagrams.iter().map(|one| &*one.name);
+    let chosen = choose(names, project.main, args.diagram.as_deref())?;
+    if let Some(svg) = &args.svg {
+        let picture = lang_dataflow::show::picture(&project, chosen, args.language);
+        return write_picture(args, svg, &picture);
+    }
+    standard(lang_dataflow::show::sentences(&project, args.language).as_bytes())?;
+    Ok(0)
+}
+
+fn write_picture(args: &ShowArgs, svg: &Path, picture: &str) -> Result<u8, Refusal> {
+    let output = Output {
+        path: Some(svg),
+        force: args.force,
+        source: &args.file,
+        locale: args.language,
     };
-    let mut all = project.diagrams.iter();
-    all.position(|diagram| diagram.name == name).ok_or_else(|| {
-        let some = project.diagrams.iter().take(limits::DIAGRAM_NAMES_MAX);
-        let mut names: Vec<_> = some.map(|diagram| harmless(&diagram.name)).collect();
-        if project.diagrams.len() > limits::DIAGRAM_NAMES_MAX {
+    output.refuse_present()?;
+    output.write(picture.as_bytes())?;
+    Ok(0)
+}
+
+/// The diagram with a name, or else the main one.
+fn choose<'a>(
+    all: impl ExactSizeIterator<Item = &'a str> + Clone,
+    main: Option<usize>,
+    name: Option<&str>,
+) -> Result<usize, Refusal> {
+    let Some(name) = name else {
+        return main.ok_or_else(|| Refusal::new("there is no diagram in this project"));
+    };
+    all.clone().position(|one| one == name).ok_or_else(|| {
+        let mut names: Vec<_> = all
+            .clone()
+            .take(limits::DIAGRAM_NAMES_MAX)
+            .map(harmless)
+            .collect();
+        if all.len() > limits::DIAGRAM_NAMES_MAX {
             names.push("others".to_owned());
         }
         let (name, names) = (harmless(name), names.join(", "));

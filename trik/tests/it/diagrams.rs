@@ -2,6 +2,7 @@
 //!
 //! Saves are made here.
 
+mod dataflow;
 mod together;
 
 use crate::documents::transcripts;

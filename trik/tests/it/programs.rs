@@ -2,6 +2,7 @@
 //!
 //! Every robot has an address of its own, so that all have the ports that clients know.
 
+mod dataflow;
 mod fleet;
 mod pretended;
 

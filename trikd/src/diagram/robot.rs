@@ -19,7 +19,8 @@ use rand_xoshiro::Xoroshiro64Star;
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::fmt::Display as Show;
 use std::fs::OpenOptions;
-use std::io::Write;
+use std::io::{Read, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::process::{Child, Stdio};
 use std::time::Instant;
 
@@ -30,7 +31,8 @@ pub struct Robot<'a> {
     motors: HashMap<Port, Option<Motor>>,
     readings: Readings<'a>,
     display: Display,
-    mail: VecDeque<String>,
+    /// Messages with the hull numbers of who sent them.
+    mail: VecDeque<(i32, String)>,
     /// Commands of the system that have not ended.
     commands: Vec<Child>,
     /// What has failed once.
@@ -77,11 +79,11 @@ impl<'a> Robot<'a> {
     }
 
     /// Keeps a message of another robot; the oldest go when nobody takes them.
-    pub fn post(&mut self, text: String) {
+    pub fn post(&mut self, sender: i32, text: String) {
         if self.mail.len() >= limits::DIAGRAM_MAIL {
             self.mail.pop_front();
         }
-        self.mail.push_back(text);
+        self.mail.push_back((sender, text));
     }
 
     /// What a person says to a question.
@@ -175,6 +177,25 @@ impl<'a> Robot<'a> {
         let result = self.host.post(question);
         self.note("mailbox", result);
     }
+}
+
+/// The text of a file, unless it is too long or no file at all: a FIFO would keep the program waiting.
+fn read_text(file: &str) -> std::io::Result<String> {
+    let invalid = |why: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, why.to_owned());
+    let opened = OpenOptions::new()
+        .read(true)
+        .custom_flags(nix::libc::O_NONBLOCK)
+        .open(file)?;
+    if !opened.metadata()?.is_file() {
+        return Err(invalid("this is no file"));
+    }
+    let mut text = String::new();
+    let limit = limits::DIAGRAM_FILE_BYTES;
+    opened.take(limit + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > limit {
+        return Err(invalid("longer than 1 MiB"));
+    }
+    Ok(text)
 }
 
 /// A figure as an order for the display.
@@ -291,6 +312,22 @@ impl brick::Brick for Robot<'_> {
     }
 
     fn mail(&mut self) -> Option<String> {
-        self.mail.pop_front()
+        self.mail.pop_front().map(|(_, text)| text)
+    }
+
+    fn letter(&mut self) -> Option<(Option<i32>, String)> {
+        let (sender, text) = self.mail.pop_front()?;
+        Some((Some(sender), text))
+    }
+
+    fn contents(&mut self, file: &str) -> Option<String> {
+        let read = read_text(file);
+        match read {
+            Ok(text) => Some(text),
+            Err(error) => {
+                self.note(file, Err::<(), _>(error));
+                None
+            }
+        }
     }
 }

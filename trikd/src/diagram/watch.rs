@@ -68,11 +68,8 @@ impl Watch {
         for error in &errors {
             host.error(error)?;
         }
-        let is_due = self
-            .reported_at
-            .is_none_or(|at| now - at >= limits::WATCH_MS);
         let is_news = self.is_new || self.has_moved || !self.changed.is_empty();
-        if !self.is_wanted || !is_due && errors.is_empty() || !is_news && errors.is_empty() {
+        if !self.is_told(is_news, now, &errors) {
             return Ok(());
         }
         let variables: Vec<(&str, &Value)> = machine
@@ -83,11 +80,62 @@ impl Watch {
             &line(machine, &variables),
             &object_of(machine, &variables, &errors),
         )?;
+        self.told(now);
+        Ok(())
+    }
+
+    /// Tells what is new of a data-flow program, if it is time: all its variables, whenever a block has reacted.
+    pub(super) fn report_flow(
+        &mut self,
+        machine: &lang_dataflow::machine::Machine,
+        has_fired: bool,
+        now: u32,
+        host: &Host,
+    ) -> io::Result<()> {
+        self.has_moved |= has_fired;
+        let errors = std::mem::take(&mut self.errors);
+        for error in &errors {
+            host.error(error)?;
+        }
+        if !self.is_told(self.is_new || self.has_moved, now, &errors) {
+            return Ok(());
+        }
+        let values = machine
+            .variables()
+            .map(|(name, value)| format!("{name} = {}", value.printed()));
+        let text = cut(values.collect::<Vec<_>>().join("; "));
+        let mut json = format!(
+            "{{\"ms\":{},\"threads\":[],\"variables\":{}",
+            machine.now(),
+            object(machine.variables())
+        );
+        put_errors(&mut json, &errors);
+        host.watch(&text, &json)?;
+        self.told(now);
+        Ok(())
+    }
+
+    /// Keeps an error until it is told.
+    pub(super) fn note(&mut self, problem: &Problem) {
+        if self.errors.len() < lang_text::limits::PROBLEMS {
+            self.errors.push(problem.in_locale(self.locale));
+        }
+    }
+
+    /// Whether somebody is to be told now.
+    fn is_told(&self, is_news: bool, now: u32, errors: &[String]) -> bool {
+        let is_due = self
+            .reported_at
+            .is_none_or(|at| now - at >= limits::WATCH_MS);
+        self.is_wanted && (!errors.is_empty() || is_due && is_news)
+    }
+
+    /// Everything was told.
+    fn told(&mut self, now: u32) {
         self.reported_at = Some(now);
         self.is_new = false;
         self.has_moved = false;
         self.changed.clear();
-        Ok(())
     }
 }
 
@@ -103,9 +151,7 @@ impl Trace for Watch {
     }
 
     fn trap(&mut self, _now: u32, problem: &Problem) {
-        if self.errors.len() < lang_text::limits::PROBLEMS {
-            self.errors.push(problem.in_locale(self.locale));
-        }
+        self.note(problem);
     }
 
     fn thread_started(&mut self, _now: u32, _thread: u16, _name: &str) {
@@ -133,7 +179,11 @@ fn line(machine: &Machine, variables: &[(&str, &Value)]) -> String {
     let values = variables
         .iter()
         .map(|(name, value)| format!("{name} = {}", value.printed()));
-    let mut line = threads.chain(values).collect::<Vec<_>>().join("; ");
+    cut(threads.chain(values).collect::<Vec<_>>().join("; "))
+}
+
+/// A line that is no longer than lines are told.
+fn cut(mut line: String) -> String {
     let mut end = line.len().min(limits::WATCH_LINE_BYTES);
     while !line.is_char_boundary(end) {
         end -= 1;
@@ -162,17 +212,27 @@ fn object_of(machine: &Machine, variables: &[(&str, &Value)], errors: &[String])
         "],\"variables\":{}",
         object(variables.iter().copied())
     );
+    put_errors(&mut json, errors);
+    json
+}
+
+/// The end of an object: errors, if there are any.
+fn put_errors(json: &mut String, errors: &[String]) {
     if !errors.is_empty() {
         let errors: Vec<_> = errors.iter().map(|error| quoted(error)).collect();
         let _ = write!(json, ",\"errors\":[{}]", errors.join(","));
     }
     json.push('}');
-    json
 }
 
 /// All variables as one JSON object.
 pub(super) fn variables(machine: &Machine) -> String {
     object(machine.variables())
+}
+
+/// All variables of a data-flow program as one JSON object.
+pub(super) fn variables_of<'a>(all: impl Iterator<Item = (&'a str, &'a Value)>) -> String {
+    object(all)
 }
 
 fn object<'a>(variables: impl Iterator<Item = (&'a str, &'a Value)>) -> String {

@@ -43,7 +43,7 @@ impl Language {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("py") => Self::Python,
             Some("js" | "qts") => Self::JavaScript,
-            Some("qrs") => Self::Diagram,
+            Some("qrs" | "flow") => Self::Diagram,
             // One that names its interpreter runs on that.
             Some("lua") if !begins_as_executable(path) => Self::Lua,
             Some(_) | None if begins_as_executable(path) => Self::Native,

@@ -51,6 +51,11 @@ impl<'a> Graph<'a> {
             let kind = match object.element() {
                 "RobotsDiagramNode" => DiagramKind::Main,
                 "SubprogramDiagram" => DiagramKind::Subprogram,
+                // Diagrams of data flow stand beside these; `lang-dataflow` reads them.
+                "RobotsBehaviourDiagram" | "RobotsBehaviourSubprogram" => {
+                    self.pass_by(object);
+                    continue;
+                }
                 other => {
                     self.warn(object, None, words::no_diagram(other));
                     continue;
@@ -61,6 +66,13 @@ impl<'a> Graph<'a> {
             }
         }
         diagrams
+    }
+
+    /// A diagram of another language: its blocks are no orphans.
+    fn pass_by(&mut self, object: &'a Object) {
+        self.reached.insert(&object.id);
+        self.reached
+            .extend(object.children.iter().map(String::as_str));
     }
 
     fn diagram(&mut self, object: &'a Object, kind: DiagramKind) -> Diagram {

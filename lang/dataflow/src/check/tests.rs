@@ -1,0 +1,311 @@
+//! What is found before anything runs.
+
+use super::*;
+use crate::machine::fixtures::{diagram, project};
+use crate::project::DiagramKind;
+use lang_text::problem::Locale;
+
+fn told(text: &str) -> Vec<String> {
+    let main = diagram("main", DiagramKind::Main, text);
+    told_of(&project(vec![main]))
+}
+
+fn told_of(project: &Project) -> Vec<String> {
+    let problems = check(project).problems;
+    let lines = problems.iter().map(|problem| {
+        assert_ne!(problem.words.english, problem.words.russian);
+        let level = match problem.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        format!("{level}: {}", problem.in_locale(Locale::English))
+    });
+    lines.collect()
+}
+
+/// That exactly one thing is told, and that it begins so.
+fn only(text: &str, wanted: &str) {
+    let told = told(text);
+    assert!(
+        told.len() == 1 && told[0].starts_with(wanted),
+        "{wanted}\n{told:#?}"
+    );
+}
+
+#[test]
+fn good_programs_have_nothing_to_tell() {
+    for text in [
+        "A Sensor\nF Text programming {IO0=I0 * 2}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3",
+        "GO Motors\nW Wait and send\nNO Motors {M3Power=0}\nEND Stop\nGO.CF_OUT > W.CF_IN\nW.CF_OUT > NO.CF_IN\nNO.CF_OUT > END.IN0",
+        "L Loop\nS Say\nL.OUT > S.DATA",
+        "V Variable {variable=n = 0}\nL Loop\nF Text programming {IO0=n = n + I0; n}\nS Say\nL.OUT > F.I0\nF.O0 > S.DATA",
+    ] {
+        assert_eq!(told(text), Vec::<String>::new(), "{text}");
+    }
+}
+
+#[test]
+fn blocks_ports_and_properties_are_looked_at() {
+    only(
+        "L Loop {time=0}\nS Say\nL.OUT > S.DATA",
+        "error: main: Loop 'L': 'dispatch time (ms)': 0 ms: the time must be above 0",
+    );
+    only(
+        "L Led {ledColor=pink}",
+        "error: main: Led 'L': 'color:': 'pink' is none of off, green, orange, red",
+    );
+    only(
+        "A Sensor {VarName=sensorA9}\nS Say\nA.OUT > S.DATA",
+        "error: main: Sensor 'A': 'Sensor': there is no sensor 'sensorA9'; did you mean 'sensorA1'?",
+    );
+    only(
+        "P Specific input {portName=A1}",
+        "error: main: Specific input 'P': 'Port name': 'A1' only tells readings",
+    );
+    only(
+        "W Wait and send {time=soon}",
+        "error: main: Wait and send 'W': 'time': 'soon' is not a number",
+    );
+    only(
+        "I Input port\nS Say\nI.OUT > S.DATA",
+        "error: main: Input port 'I': input and output ports belong in subprograms",
+    );
+    only(
+        "C User block of nothing",
+        "error: main: User block 'C': the subprogram that it calls is not in the project",
+    );
+    let mut main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
+    for (port, wanted) in [
+        (
+            7,
+            "error: main: Sensor 'A': it has no port 7: its ports are 0 to 1",
+        ),
+        (-5, "error: main: Sensor 'A': it has no port -5"),
+        (
+            0,
+            "error: main: Sensor 'A': an edge begins at CF_IN, which is an input",
+        ),
+    ] {
+        if let Some(from) = &mut main.edges[0].from {
+            from.port = port;
+        }
+        let told = told_of(&project(vec![main.clone()]));
+        assert!(told[0].starts_with(wanted), "{told:?}");
+    }
+    main.edges[0].from = None;
+    let told = told_of(&project(vec![main]));
+    assert!(
+        told[0].starts_with("error: main: ? -> Say 'S': this edge is not attached"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn subprograms_do_not_call_themselves_and_have_their_ports() {
+    let again = diagram("again", DiagramKind::Subprogram, "C User block of again");
+    let main = diagram("main", DiagramKind::Main, "C User block of again");
+    let told = told_of(&project(vec![main, again]));
+    assert!(
+        told[0].contains("User block 'C': the subprogram 'again' calls itself"),
+        "{told:?}"
+    );
+    let body = diagram("body", DiagramKind::Subprogram, "H Say");
+    let main = diagram(
+        "main",
+        DiagramKind::Main,
+        "V Value generator\nC User block of body\nV.OUT > C.I1",
+    );
+    let told = told_of(&project(vec![main, body]));
+    assert!(
+        told[0].starts_with("warning: main: User block 'C': 'I1': tokens that come to I1 are lost"),
+        "{told:?}"
+    );
+    // Each of two calls of a subprogram that calls three times a third one: 100 are too many only at last.
+    let leaf = diagram("leaf", DiagramKind::Subprogram, "H Say");
+    let many: String = (0..12)
+        .map(|at| format!("C{at} User block of leaf\n"))
+        .collect();
+    let middle = diagram("middle", DiagramKind::Subprogram, &many);
+    let calls: String = (0..9)
+        .map(|at| format!("C{at} User block of middle\n"))
+        .collect();
+    let main = diagram("main", DiagramKind::Main, &calls);
+    let told = told_of(&project(vec![main, middle, leaf]));
+    assert!(
+        told[0].contains("more than 100 diagrams at work"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn expressions_are_looked_at_with_the_types_of_their_inputs() {
+    only(
+        "A Sensor\nF Text programming {IO0=I0 +}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA",
+        "error: main: Text programming 'F': 'IO0', 1:4 Unexpected end of input",
+    );
+    only(
+        "A Sensor {VarName=lineSensor}\nF Text programming {IO0=I0 + 1}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA",
+        "error: main: Text programming 'F': 'IO0', 1:1",
+    );
+    only(
+        "A Sensor\nF Text programming {IO0=I0 + speed}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3",
+        "error: main: Text programming 'F': 'IO0', 1:6 speed is never given a value",
+    );
+    only(
+        "A Sensor\nI If {condition=data > }\nS Say\nA.OUT > I.DATA\nI.TRUE > S.DATA",
+        "error: main: If 'I': 'Condition', 1:",
+    );
+    only(
+        "A Sensor\nF Text programming {IO0=I0 + I1}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA",
+        "error: main: Text programming 'F': 'IO0': it reads I1, which has no edge",
+    );
+}
+
+#[test]
+fn tokens_fit_their_ports() {
+    only(
+        "A Sensor {VarName=lineSensor}\nM Motors\nA.OUT > M.M3",
+        "error: main: Motors 'M': 'M3': a list comes here, but a whole number is needed",
+    );
+    only(
+        "V Value generator {varValue=fast}\nM Motors\nV.OUT > M.M3",
+        "error: main: Motors 'M': 'M3': a text comes here, but a whole number is needed",
+    );
+    only(
+        "V Value generator {varValue=[1, 2]}\nL Draw line\nV.OUT > L.COORDS",
+        "error: main: Draw line 'L': 'COORDS': a list comes here, but a list of 4 is needed",
+    );
+    only(
+        "W Wait and send\nM Motors\nW.CF_OUT > M.M3",
+        "warning: main: Motors 'M': 'M3': a control token comes to M3, which has no value",
+    );
+    only(
+        "A Sensor\nZ Zip flows\nU Unzip flows\nS Say\nA.OUT > Z.DATA1\nZ.OUT > U.DATA\nU.OUT1 > S.DATA",
+        "error: main: Zip flows 'Z': 'DATA2': this input has no edge",
+    );
+    assert_eq!(
+        told("V Value generator {varValue=7}\nM Motors\nV.OUT > M.M3"),
+        Vec::<String>::new()
+    );
+}
+
+#[test]
+fn cycles_dead_blocks_and_unused_values_are_told() {
+    only(
+        "V Value generator {varValue=0}\nF Text programming {IO0=I0+1}\nI If {condition=data<10}\nS Say\nV.OUT > F.I0\nF.O0 > I.DATA\nI.TRUE > F.I0\nI.FALSE > S.DATA",
+        "warning: main: Text programming 'F': tokens can run around within one instant (Text programming 'F', If 'I')",
+    );
+    assert_eq!(
+        told(
+            "W Wait and send\nV Value generator\nS Say\nV.OUT > W.DATA\nW.OUT > S.DATA\nS.CF_OUT > W.CF_IN"
+        ),
+        Vec::<String>::new()
+    );
+    let told = told("A Say\nB Say\nA.CF_OUT > B.CF_IN\nB.CF_OUT > A.CF_IN");
+    assert!(
+        told.iter()
+            .any(|one| one.contains("Say 'A': nothing starts it")),
+        "{told:?}"
+    );
+    only(
+        "V Value generator",
+        "warning: main: Value generator 'V': nobody takes what it gives",
+    );
+    only(
+        "A Stop\nS Say",
+        "warning: main: Stop 'A': no edge comes to it, so it ends nothing",
+    );
+    only(
+        "A Sensor\nS Say\nA.OUT > S.DATA\nA.OUT > S.DATA",
+        "warning: main: Sensor 'A' -> Say 'S': another edge connects the same two ports",
+    );
+    only(
+        "G Gamepad\nE Encoders {E3Clear=false}\nS Say\nE.E3_OUT > S.DATA\nG.WHEEL > E.E4_IN",
+        "warning: main: Encoders 'E': 'E3_OUT': this encoder gives nothing until it is reset",
+    );
+    only(
+        "A Sensor\nG Say\nF Text programming {IO0=I0}\nS Say\nA.OUT > F.I0\nG.CF_OUT > F.CF_IN\nF.O0 > S.DATA",
+        "warning: main: Text programming 'F': 'CF_IN': a start means nothing to a function that has inputs",
+    );
+}
+
+#[test]
+fn two_masters_of_a_motor_are_told_unless_something_decides() {
+    let two = "A Sensor\nB Sensor {VarName=sensorA2}\nM Motors\nA.OUT > M.M3\nB.OUT > M.M3";
+    only(
+        two,
+        "warning: main: Motors 'M': Sensor 'A' and Sensor 'B' both drive M3 and nothing decides",
+    );
+    let decided = "A Sensor\nI If\nF Text programming {IO0=I0}\nG Text programming {IO0=0 - I0}\nM Motors\nA.OUT > I.DATA\nI.TRUE > F.I0\nI.FALSE > G.I0\nF.O0 > M.M3\nG.O0 > M.M3";
+    assert_eq!(told(decided), Vec::<String>::new());
+}
+
+#[test]
+fn streams_of_different_periods_are_told() {
+    only(
+        "A Sensor\nL Loop {time=100}\nZ Zip flows\nU Unzip flows\nS Say\nA.OUT > Z.DATA1\nL.OUT > Z.DATA2\nZ.OUT > U.DATA\nU.OUT1 > S.DATA",
+        "warning: main: Zip flows 'Z': 'DATA1': tokens come to DATA1 more often than to DATA2",
+    );
+    only(
+        "A Sensor\nB Sensor {VarName=sensorA2}\nR Flow replacer\nM Motors\nA.OUT > R.REPLACE_DATA\nB.OUT > R.DATA\nR.OUT > M.M3",
+        "warning: main: Flow replacer 'R': its time of 10 ms is shorter than the 20 ms",
+    );
+}
+
+#[test]
+fn lists_and_what_functions_give_are_known_along_the_way() {
+    for good in [
+        "G Sensor {VarName=gyroscope}\nF Text programming {IO0=I0[0] * 2}\nM Motors\nG.OUT > F.I0\nF.O0 > M.M3",
+        "G Gamepad\nI If {condition=data[0] > 1}\nS Say\nG.PAD > I.DATA\nI.TRUE > S.CF_IN",
+        "R Read file\nM Motors\nR.OUT > M.M3",
+        "A Sensor\nF Text programming {IO0=I0 / 2}\nG Text programming {IO0=I0 + 1}\nM Motors\nA.OUT > F.I0\nF.O0 > G.I0\nG.O0 > M.M3",
+        "V Value generator {varValue=[1, 2]}\nF Text programming {IO0=I0[1]}\nM Motors\nV.OUT > F.I0\nF.O0 > M.M3",
+    ] {
+        assert_eq!(told(good), Vec::<String>::new(), "{good}");
+    }
+    only(
+        "A Sensor\nF Text programming {IO0={I0, 1}}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3",
+        "error: main: Motors 'M': 'M3': a list comes here",
+    );
+    only(
+        "A Sensor\nF Text programming {IO0=I0 .. '!'}\nG Text programming {IO0=I0 * 2}\nM Motors\nA.OUT > F.I0\nF.O0 > G.I0\nG.O0 > M.M3",
+        "error: main: Text programming 'G': 'IO0', 1:1",
+    );
+    only(
+        "L Loop {increment=0}\nS Say\nL.OUT > S.DATA",
+        "error: main: Loop 'L': 'increment_step': the step is 0",
+    );
+    only(
+        "V Variable {variable=sensorA1}",
+        "error: main: Variable 'V': 'variable': 'sensorA1' is not a name of a variable",
+    );
+}
+
+#[test]
+fn an_error_is_never_lost_among_warnings() {
+    let mut main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
+    let twin = main.edges[0].clone();
+    main.edges.extend(std::iter::repeat_n(twin, 3000));
+    for (at, port) in [(0, 77), (3000, 300)] {
+        let mut bad = main.clone();
+        if let Some(to) = &mut bad.edges[at].to {
+            to.port = port;
+        }
+        let checked = check(&project(vec![bad]));
+        assert!(checked.has_errors());
+        assert_eq!(checked.problems[0].severity, Severity::Error);
+    }
+    let checked = check(&project(vec![main.clone()]));
+    assert!(!checked.has_errors());
+    main.blocks[1]
+        .properties
+        .insert("text".to_owned(), "x".repeat(5 << 20));
+    let checked = check(&project(vec![main]));
+    assert!(checked.has_errors());
+    assert!(
+        checked.problems[0]
+            .to_string()
+            .contains("more than 4 MiB of text")
+    );
+}

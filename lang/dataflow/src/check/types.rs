@@ -1,0 +1,493 @@
+//! Types of tokens: what each output gives, as far as it is known before anything runs.
+//!
+//! Owns the inference. What is not known fits everywhere: then the program says so when it runs.
+
+use super::Found;
+use super::words;
+use crate::blocks::Kind;
+use crate::lower::DATA;
+use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target, Text};
+use lang_diagram::ports::Sort;
+use lang_expr::names::{is_own, own_name};
+use lang_expr::reserved::{SENSORS, Shape};
+use lang_expr::tree::Node as Part;
+use lang_expr::{Compat, Names, Source, Type, Value};
+use std::collections::HashSet;
+use std::rc::Rc;
+
+/// How often types are handed on; a chain that is longer in the wrong order stays unknown at its end.
+const PASSES: usize = 12;
+
+/// What a token is.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub(super) enum Of {
+    /// No token comes there, as far as it is known yet.
+    #[default]
+    Never,
+    /// A unit.
+    Unit,
+    /// A truth.
+    Truth,
+    /// A whole number.
+    Whole,
+    /// A number.
+    Number,
+    /// A text of the diagram that is a number.
+    Digits,
+    /// A text of the diagram that is none.
+    Text,
+    /// A text that nobody knows before.
+    Computed,
+    /// A list of so many items; 0: nobody knows how many.
+    List(u16),
+    /// The same, of whole numbers.
+    Wholes(u16),
+    /// Not known.
+    Any,
+}
+
+impl Of {
+    /// What it is if it may be either.
+    fn join(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Never, one) | (one, Self::Never) => one,
+            (one, other) if one == other => one,
+            (Self::Whole, Self::Number) | (Self::Number, Self::Whole) => Self::Number,
+            (Self::List(one) | Self::Wholes(one), Self::List(other) | Self::Wholes(other)) => {
+                Self::List(if one == other { one } else { 0 })
+            }
+            (
+                Self::Digits | Self::Text | Self::Computed,
+                Self::Digits | Self::Text | Self::Computed,
+            ) => Self::Computed,
+            (
+                Self::Unit
+                | Self::Truth
+                | Self::Whole
+                | Self::Number
+                | Self::Digits
+                | Self::Text
+                | Self::Computed
+                | Self::List(_)
+                | Self::Wholes(_)
+                | Self::Any,
+                _,
+            ) => Self::Any,
+        }
+    }
+
+    fn of_value(value: &Value) -> Self {
+        match value {
+            Value::Nil => Self::Unit,
+            Value::Bool(_) => Self::Truth,
+            Value::Int(_) => Self::Whole,
+            Value::Float(_) => Self::Number,
+            Value::Text(text) if text.trim().parse::<f64>().is_ok() => Self::Digits,
+            Value::Text(_) | Value::Unset => Self::Text,
+            Value::List(list) => {
+                let count = u16::try_from(list.items().len()).unwrap_or(0);
+                let is_whole = |item: &Value| matches!(item, Value::Int(_));
+                match list.items().iter().all(is_whole) {
+                    true => Self::Wholes(count),
+                    false => Self::List(count),
+                }
+            }
+        }
+    }
+
+    fn of_type(of: Type) -> Self {
+        match of {
+            Type::Any | Type::Open | Type::Function => Self::Any,
+            Type::Bool => Self::Truth,
+            Type::Int => Self::Whole,
+            Type::Float => Self::Number,
+            Type::Text => Self::Computed,
+            Type::Nil => Self::Unit,
+            Type::Table(_) => Self::List(0),
+        }
+    }
+
+    /// A value of this type, to teach the names of expressions; none if it is not known.
+    fn example(self) -> Option<Value> {
+        match self {
+            // What the items are, nobody knows.
+            Self::Never | Self::Unit | Self::Any | Self::List(_) => None,
+            Self::Truth => Some(Value::Bool(true)),
+            Self::Whole => Some(Value::Int(0)),
+            Self::Number => Some(Value::Float(0.5)),
+            Self::Digits | Self::Text | Self::Computed => Some(Value::text("")),
+            Self::Wholes(_) => Some(Value::ints(&[0])),
+        }
+    }
+
+    /// Whether a port may take it.
+    pub(super) fn fits(self, kind: Kind) -> bool {
+        match (kind, self) {
+            (Kind::Unit | Kind::Any, _) => true,
+            // What has no value is told as a warning.
+            (_, Self::Never | Self::Unit | Self::Any) => true,
+            (Kind::Truth, Self::Truth | Self::Whole | Self::Computed) => true,
+            (Kind::Whole, Self::Whole | Self::Number | Self::Digits | Self::Computed) => true,
+            (
+                Kind::Text,
+                Self::Truth
+                | Self::Whole
+                | Self::Number
+                | Self::Digits
+                | Self::Text
+                | Self::Computed,
+            ) => true,
+            (Kind::List, Self::List(_) | Self::Wholes(_)) => true,
+            (Kind::Items(_), Self::List(0) | Self::Wholes(0)) => true,
+            (Kind::Items(count), Self::List(known) | Self::Wholes(known)) => {
+                u16::from(count) == known
+            }
+            (
+                Kind::Truth | Kind::Whole | Kind::Text | Kind::List | Kind::Items(_),
+                Self::Truth
+                | Self::Whole
+                | Self::Number
+                | Self::Digits
+                | Self::Text
+                | Self::Computed
+                | Self::List(_)
+                | Self::Wholes(_),
+            ) => false,
+        }
+    }
+
+    /// What it is, in words.
+    pub(super) fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Never | Self::Any => words::A_VALUE,
+            Self::Unit => words::A_UNIT,
+            Self::Truth => words::A_TRUTH,
+            Self::Whole => words::A_WHOLE,
+            Self::Number => words::A_NUMBER,
+            Self::Digits | Self::Text | Self::Computed => words::A_TEXT,
+            Self::List(_) | Self::Wholes(_) => words::A_LIST,
+        }
+    }
+}
+
+/// What each output gives, and what comes to each input.
+pub(super) struct Types {
+    pub outs: Vec<Vec<Of>>,
+    ins: Vec<Vec<Of>>,
+}
+
+/// Hands types on until nothing changes, and tells what is wrong with expressions.
+pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
+    let blank = || -> Vec<Vec<Of>> {
+        let nodes = program.nodes.iter();
+        nodes
+            .map(|node| vec![Of::Never; node.row.ports.len()])
+            .collect()
+    };
+    let mut inference = Inference {
+        program,
+        types: Types {
+            outs: blank(),
+            ins: blank(),
+        },
+        names: Names::new(program.kit, Compat::Fixed),
+        texts: program.formulas.iter().map(|_| Of::Any).collect(),
+        assigned: assigned(program),
+    };
+    for pass in 0..PASSES {
+        let is_last = pass + 1 == PASSES;
+        let before = inference.types.outs.clone();
+        inference.learn(None);
+        inference.pass();
+        if before == inference.types.outs && pass > 1 || is_last {
+            break;
+        }
+    }
+    inference.learn(Some(found));
+    inference.types
+}
+
+/// Whether the types of the names are known that an expression reads.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Known {
+    /// Of all of them.
+    All,
+    /// Nothing comes to one of them, as far as it is known yet.
+    NotYet,
+    /// Of one of them nobody can know it.
+    Never,
+}
+
+struct Inference<'a> {
+    program: &'a Program,
+    types: Types,
+    names: Names,
+    /// What each expression gives.
+    texts: Vec<Of>,
+    /// Variables that some text gives a value.
+    assigned: HashSet<Rc<str>>,
+}
+
+/// Variables of the project that its texts and its blocks give values.
+fn assigned(program: &Program) -> HashSet<Rc<str>> {
+    let mut all = HashSet::new();
+    for text in &program.formulas {
+        let source = Source::new(&text.text, text.wanted);
+        let tree = source.tree();
+        for part in &tree.nodes {
+            let Part::Assign { target, .. } = part else {
+                continue;
+            };
+            let mut at = *target;
+            while let Part::Index { table, .. } = tree.node(at) {
+                at = *table;
+            }
+            if let Part::Name(name) = tree.node(at) {
+                all.insert(name.clone());
+            }
+        }
+    }
+    for node in &program.nodes {
+        if let Op::Flow(Flow::Variable { names, run: None }) = &node.op {
+            all.extend(names.iter().cloned());
+        }
+    }
+    all
+}
+
+impl Inference<'_> {
+    /// Looks at each expression with what is known of its names.
+    fn learn(&mut self, mut found: Option<&mut Found>) {
+        for index in 0..self.program.formulas.len() {
+            let text = &self.program.formulas[index];
+            let known = self.bind(text);
+            let rename = |name: &str| text.own.contains(&name).then(|| own_name(name, text.node));
+            let mut source = Source::with_own_names(&text.text, text.wanted, &rename);
+            let outcome = match (known, source.tree().root) {
+                (Known::All, _) | (_, None) => lang_expr::analyse(&mut source, &mut self.names),
+                // Without types only the grammar can be looked at.
+                (Known::NotYet | Known::Never, Some(_)) => Ok(()),
+            };
+            self.texts[index] = match (known, &outcome) {
+                (Known::All, Ok(())) => self.result(&source),
+                (Known::Never, _) => Of::Any,
+                // What is not known yet, or not understood before other texts are, may be known later.
+                (Known::All | Known::NotYet, _) => Of::Never,
+            };
+            let Some(found) = found.as_deref_mut() else {
+                continue;
+            };
+            if self.tell_unassigned(&source, text, found) {
+                continue;
+            }
+            if let Err(problems) = outcome {
+                for problem in problems {
+                    let at = problem.place.position;
+                    let place = self.program.property_place(text.node, text.property, at);
+                    found.error(place, problem.words);
+                }
+            }
+        }
+    }
+
+    /// Tells names that no text of the program gives a value; whether there are any.
+    fn tell_unassigned(&self, source: &Source, text: &Text, found: &mut Found) -> bool {
+        let before = found.problems.len();
+        let tree = source.tree();
+        for (part, at) in tree.nodes.iter().zip(&tree.places) {
+            let Part::Name(name) = part else {
+                continue;
+            };
+            let slot = self.names.find(name);
+            let kind = slot.and_then(|slot| self.names.kind(slot));
+            let is_variable = matches!(kind, None | Some(lang_expr::Kind::Variable));
+            if is_variable && !is_own(name) && !self.assigned.contains(name) {
+                let place = self
+                    .program
+                    .property_place(text.node, text.property, Some(*at));
+                found.error(place, words::never_assigned(name));
+            }
+        }
+        found.problems.len() > before
+    }
+
+    /// Teaches the names what the own ones of a text are, as far as that is known.
+    fn bind(&mut self, text: &Text) -> Known {
+        let node = self.program.node(text.node);
+        let mut known = Known::All;
+        let source = Source::new(&text.text, text.wanted);
+        for name in text.own {
+            if !source.names().any(|one| one == *name) {
+                continue;
+            }
+            let port = match text.own == DATA {
+                true => node.row.port("DATA"),
+                false => node.row.port(name),
+            };
+            let ins = &self.types.ins[text.node as usize];
+            let of = port.map_or(Of::Any, |port| ins[usize::from(port)]);
+            let slot = self.names.slot(&own_name(name, text.node));
+            match (of.example(), slot, of) {
+                (Some(example), Some(slot), _) => _ = self.names.retype(slot, &example),
+                (_, _, Of::Never) if known != Known::Never => known = Known::NotYet,
+                _ => known = Known::Never,
+            }
+        }
+        known
+    }
+
+    /// What an expression that is understood gives.
+    fn result(&self, source: &Source) -> Of {
+        let statements = source.tree().statements();
+        let Some(&last) = statements.last() else {
+            return Of::Unit;
+        };
+        let part = source.tree().node(last);
+        if let Part::Assign { .. } = part {
+            return Of::Unit;
+        }
+        if let Part::Table { fields, .. } = part
+            && fields.iter().all(|field| field.key.is_none())
+        {
+            return Of::List(u16::try_from(fields.len()).unwrap_or(0));
+        }
+        Of::of_type(source.type_of(last, &self.names))
+    }
+
+    fn pass(&mut self) {
+        let program = self.program;
+        for id in 0..program.nodes.len() as NodeId {
+            self.node(id);
+            for (port, to) in program.edges(id) {
+                let of = self.types.outs[id as usize][usize::from(port)];
+                let came = &mut self.types.ins[to.node as usize][usize::from(to.port)];
+                *came = came.join(of);
+            }
+        }
+        for instance in &program.instances {
+            let Some(caller) = instance.caller else {
+                continue;
+            };
+            for &(port, input) in &instance.inputs {
+                let of = self.types.ins[caller as usize][usize::from(port)];
+                self.types.outs[input as usize][0] = self.types.outs[input as usize][0].join(of);
+            }
+        }
+    }
+
+    /// What the outputs of a node give.
+    fn node(&mut self, id: NodeId) {
+        let node = self.program.node(id);
+        let ins = self.types.ins[id as usize].clone();
+        let give = |types: &mut Types, port: u8, of: Of| {
+            let out = &mut types.outs[id as usize][usize::from(port)];
+            *out = out.join(of);
+        };
+        for (port, row) in (0..).zip(node.row.ports) {
+            let fixed = match row.of {
+                Kind::Unit => Of::Unit,
+                Kind::Truth => Of::Truth,
+                Kind::Whole => Of::Whole,
+                Kind::Text => Of::Computed,
+                Kind::List | Kind::Any => continue,
+                Kind::Items(count) => Of::List(u16::from(count)),
+            };
+            if row.way == crate::blocks::Direction::Out {
+                give(&mut self.types, port, fixed);
+            }
+        }
+        match &node.op {
+            Op::Flow(flow) => self.flow(id, flow, &ins),
+            Op::Source(source) => match source {
+                Gives::Sensor(sensor) => {
+                    let of = match SENSORS.get(usize::from(*sensor)).map(|sensor| sensor.shape) {
+                        Some(Shape::Number) => Of::Whole,
+                        Some(Shape::Numbers(count)) => {
+                            Of::Wholes(u16::try_from(count).unwrap_or(0))
+                        }
+                        None => Of::Any,
+                    };
+                    give(&mut self.types, 1, of);
+                }
+                Gives::Detect(Camera::Line | Camera::Object | Camera::Color) => {
+                    give(&mut self.types, 1, Of::Wholes(3));
+                }
+                Gives::Encoders(_) | Gives::Gamepad | Gives::Receive => {}
+            },
+            Op::Act(Act::ReadPort(read)) => {
+                let of = match read {
+                    Read::Told(_) | Read::Part(..) => Of::Whole,
+                    Read::Device(port) if port.sort() == Sort::Vector => Of::Wholes(0),
+                    Read::Device(_) => Of::Whole,
+                };
+                give(&mut self.types, 1, of);
+            }
+            Op::Act(_) => {}
+        }
+    }
+
+    fn flow(&mut self, id: NodeId, flow: &Flow, ins: &[Of]) {
+        let texts = &self.texts;
+        let text = |index: &Option<u32>| index.map(|index| texts[index as usize]);
+        let mut gives: Vec<(u8, Of)> = Vec::new();
+        match flow {
+            Flow::Function { texts, .. } => {
+                let all = (0..).zip(texts);
+                gives.extend(all.filter_map(|(at, one)| Some((3 + 2 * at, text(one)?))));
+            }
+            Flow::If(_) => {
+                // A start sends a unit the same ways.
+                let of = match self.program.node(id).is_linked(0) {
+                    true => ins[1].join(Of::Unit),
+                    false => ins[1],
+                };
+                gives.extend([(2, of), (3, of)]);
+            }
+            Flow::Switch { arms, .. } => {
+                let all = (3..).zip(arms);
+                gives.extend(all.map(|(port, (_, one))| (port, text(one).unwrap_or(ins[2]))));
+            }
+            Flow::Constant(value) => gives.push((1, Of::of_value(value))),
+            Flow::Variable { names, .. } => {
+                let slot = names.first().and_then(|name| self.names.find(name));
+                // A variable whose type nobody has said yet may get one.
+                let of = slot.map_or(Of::Never, |slot| {
+                    match Of::of_type(self.names.type_of(slot)) {
+                        Of::Any => Of::Never,
+                        known @ (Of::Never
+                        | Of::Unit
+                        | Of::Truth
+                        | Of::Whole
+                        | Of::Number
+                        | Of::Digits
+                        | Of::Text
+                        | Of::Computed
+                        | Of::List(_)
+                        | Of::Wholes(_)) => known,
+                    }
+                });
+                gives.push((3, of));
+            }
+            Flow::Filter { .. } => gives.push((3, ins[4])),
+            Flow::Wait(_) => gives.push((3, ins[2])),
+            Flow::Replace(_) => gives.push((2, ins[0].join(ins[1]))),
+            Flow::Inhibit(_) => gives.push((2, ins[1])),
+            Flow::Unzip => gives.extend([(1, Of::Any), (2, Of::Any)]),
+            Flow::OutPort(Some(Target { node, port })) => {
+                let out = &mut self.types.outs[*node as usize][usize::from(*port)];
+                *out = out.join(ins[0]);
+            }
+            Flow::Stop
+            | Flow::Loop { .. }
+            | Flow::Call(_)
+            | Flow::InPort
+            | Flow::OutPort(None)
+            | Flow::Random { .. }
+            | Flow::Zip => {}
+        }
+        for (port, of) in gives {
+            let out = &mut self.types.outs[id as usize][usize::from(port)];
+            *out = out.join(of);
+        }
+    }
+}

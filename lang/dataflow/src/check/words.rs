@@ -1,0 +1,159 @@
+//! What several blocks together show before anything runs, in words.
+//!
+//! Owns the texts in both languages. Where something is wrong is known to who finds it.
+
+use crate::words::short;
+use lang_text::problem::Words;
+
+pub(crate) const A_VALUE: [&str; 2] = ["a value", "значение"];
+pub(crate) const A_UNIT: [&str; 2] = ["a control token", "управляющий сигнал"];
+pub(crate) const A_TRUTH: [&str; 2] = ["a truth", "логическое значение"];
+pub(crate) const A_WHOLE: [&str; 2] = ["a whole number", "целое число"];
+pub(crate) const A_NUMBER: [&str; 2] = ["a number", "число"];
+pub(crate) const A_TEXT: [&str; 2] = ["a text", "текст"];
+pub(crate) const A_LIST: [&str; 2] = ["a list", "список"];
+
+pub(crate) fn does_not_fit(comes: [&str; 2], wanted: [&str; 2], count: Option<u8>) -> Words {
+    let (english, russian) = match count {
+        Some(count) => (format!(" of {count}"), format!(" из {count}")),
+        None => (String::new(), String::new()),
+    };
+    Words::new(
+        format!(
+            "{} comes here, but {}{english} is needed",
+            comes[0], wanted[0]
+        ),
+        format!(
+            "сюда приходит {}, а нужно: {}{russian}",
+            comes[1], wanted[1]
+        ),
+    )
+}
+
+pub(crate) fn unit_here(port: &str) -> Words {
+    Words::new(
+        format!("a control token comes to {port}, which has no value: connect a data output"),
+        format!("в {port} приходит управляющий сигнал без значения: присоедините выход с данными"),
+    )
+}
+
+pub(crate) fn unlinked() -> Words {
+    Words::new(
+        "this input has no edge, so the block never fires: connect it",
+        "к этому входу ничего не присоединено, поэтому блок никогда не сработает: присоедините",
+    )
+}
+
+pub(crate) fn unlinked_name(name: &str, flag: &str) -> Words {
+    Words::new(
+        format!("it reads {name}, which has no edge: connect it, or switch '{flag}' off"),
+        format!(
+            "он читает {name}, а к этому входу ничего не присоединено: присоедините или выключите '{flag}'"
+        ),
+    )
+}
+
+pub(crate) fn never_assigned(name: &str) -> Words {
+    Words::new(
+        format!(
+            "{} is never given a value: write `{} = ...` in a Variable that is started first",
+            short(name),
+            short(name)
+        ),
+        format!(
+            "{} нигде не получает значения: напишите `{} = ...` в переменной, которая запускается первой",
+            short(name),
+            short(name)
+        ),
+    )
+}
+
+pub(crate) fn cycle(blocks: &[String], count: usize) -> Words {
+    let more = if count > blocks.len() { ", ..." } else { "" };
+    let names = blocks.join(", ");
+    Words::new(
+        format!(
+            "tokens can run around within one instant ({names}{more}): put a 'Wait and send' into the cycle, unless a condition ends it"
+        ),
+        format!(
+            "значения могут бежать по кругу в одно мгновение ({names}{more}): поставьте в цикл ожидание, если его не кончает условие"
+        ),
+    )
+}
+
+pub(crate) fn dead() -> Words {
+    Words::new(
+        "nothing starts it: no token comes here from a block that has no incoming edges",
+        "ничто его не запускает: сюда не приходит ничего от блоков без входящих линий",
+    )
+}
+
+pub(crate) fn no_input() -> Words {
+    Words::new(
+        "no edge comes to it, and it cannot begin by itself: it does nothing",
+        "к нему ничего не присоединено, а сам он начать не может: он ничего не делает",
+    )
+}
+
+pub(crate) fn stop_unlinked() -> Words {
+    Words::new(
+        "no edge comes to it, so it ends nothing: connect what has to end the program",
+        "к нему ничего не присоединено, и он ничего не кончает: присоедините то, что должно завершить программу",
+    )
+}
+
+pub(crate) fn start_ignored() -> Words {
+    Words::new(
+        "a start means nothing to a function that has inputs: it fires when its tokens come",
+        "для функции с входами сигнал запуска ничего не значит: она срабатывает, когда приходят значения",
+    )
+}
+
+pub(crate) fn unused() -> Words {
+    Words::new(
+        "nobody takes what it gives: connect its output, or delete it",
+        "его значения никто не берёт: присоедините выход или удалите блок",
+    )
+}
+
+pub(crate) fn encoder_silent() -> Words {
+    Words::new(
+        "this encoder gives nothing until it is reset: set its flag, or connect its input",
+        "этот энкодер молчит, пока его не обнулят: поставьте флажок или присоедините вход",
+    )
+}
+
+pub(crate) fn two_writers(port: &str, names: &[String; 2]) -> Words {
+    let [one, other] = names;
+    Words::new(
+        format!(
+            "{one} and {other} both drive {port} and nothing decides between them: put a Flow replacer, a Flow delay, an If or a Switch there"
+        ),
+        format!(
+            "{one} и {other} управляют {port}, и ничто не выбирает между ними: поставьте подавление, торможение, условие или выбор"
+        ),
+    )
+}
+
+pub(crate) fn short_window(ms: i32, period: u32) -> Words {
+    Words::new(
+        format!(
+            "its time of {ms} ms is shorter than the {period} ms between the tokens that open it, so the other stream comes through in between"
+        ),
+        format!(
+            "его время {ms} мс меньше {period} мс между открывающими значениями, поэтому в промежутке проходит другой поток"
+        ),
+    )
+}
+
+pub(crate) fn rates_differ(ports: [&str; 2]) -> Words {
+    let [fast, slow] = ports;
+    Words::new(
+        format!(
+            "tokens come to {fast} more often than to {slow}, so they queue up and grow old: give the edge to {fast} the policy latest"
+        ),
+        format!(
+            "в {fast} значения приходят чаще, чем в {slow}, поэтому они копятся и устаревают: задайте линии к {fast} правило latest"
+        ),
+    )
+}

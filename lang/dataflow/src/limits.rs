@@ -1,0 +1,58 @@
+//! Every limit of this crate: how far data-flow programs, their queues and their texts may grow.
+
+/// Blocks of a project, instances of subprograms counted each time.
+pub const NODES_MAX: usize = 200_000;
+/// Edges of a project, likewise.
+pub const EDGES_MAX: usize = 2_000_000;
+/// Tokens that wait at one port; an edge may say less.
+pub const QUEUE_MAX: usize = 1024;
+/// What tokens that wait at all ports weigh together: each 1, and one more for 16 bytes of text and for each item.
+pub const QUEUED_CELLS_MAX: u32 = 1_000_000;
+/// Nodes that are looked at to find who drives a motor together with whom.
+pub const WRITER_WALKS_MAX: usize = 2_000_000;
+/// Tokens that are on their way within one instant.
+pub const DELIVERIES_MAX: usize = 1_000_000;
+/// Reactions of blocks within one instant.
+pub const FIRINGS_MAX: u32 = 10_000;
+/// Items of a list that is a token.
+pub const ITEMS_MAX: usize = 4096;
+/// Bytes of a text that is a token.
+pub const TEXT_BYTES_MAX: usize = 64 << 10;
+/// Bytes of all texts of properties, instances counted each time.
+pub const TEXTS_BYTES_MAX: usize = 4 << 20;
+/// Instances of diagrams, the main one included.
+pub const INSTANCES_MAX: usize = 100;
+/// How deep calls may nest.
+pub const DEPTH_MAX: usize = 16;
+/// Messages of other robots that are taken in one instant.
+pub const MAIL_MAX: usize = 100;
+/// Words or lines that one reading of a file gives.
+pub const PIECES_MAX: usize = 4096;
+/// Blocks of a cycle that a message names.
+pub const NAMED_MAX: usize = 8;
+/// Bytes of a program as text.
+pub const SOURCE_BYTES_MAX: usize = 32 << 20;
+/// Diagrams of a program as text.
+pub const SOURCE_DIAGRAMS_MAX: usize = 10_000;
+/// Blocks of a program as text.
+pub const SOURCE_BLOCKS_MAX: usize = 100_000;
+/// Edges of a program as text.
+pub const SOURCE_EDGES_MAX: usize = 400_000;
+/// Bytes of an id in it: what a save can hold.
+pub const SOURCE_ID_BYTES_MAX: usize = 512;
+/// Bytes of a name in an id that is made of it.
+pub const SOURCE_ID_NAME_BYTES_MAX: usize = 120;
+/// Bytes of a label that is made of a caption.
+pub const LABEL_BYTES_MAX: usize = 60;
+/// Properties of all its blocks, and its keys.
+pub const SOURCE_PROPERTIES_MAX: usize = 1_000_000;
+/// Names that are compared with all those that are not known.
+pub const NAMES_COMPARED_MAX: usize = 5000;
+/// Blocks of one picture.
+pub const PICTURE_BLOCKS_MAX: usize = 5000;
+/// Corners of one edge in a picture.
+pub const PICTURE_CORNERS_MAX: usize = 64;
+/// Characters of a property in a picture.
+pub const PICTURE_PROPERTY_MAX: usize = 48;
+/// Characters of a property in a sentence.
+pub const SENTENCE_PROPERTY_MAX: usize = 400;

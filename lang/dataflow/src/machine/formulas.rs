@@ -1,0 +1,243 @@
+//! Expressions of a running program: names, values, and which names are whose own.
+//!
+//! Owns the border to the language of expressions. A name that is a block's own has the type of the value that it got
+//! last, so tokens of a port may change their type; a variable of the project has one type.
+
+use super::COMPAT;
+use super::state::State;
+use super::words;
+use crate::program::{Formula, NodeId, Program, Text};
+use lang_expr::names::{is_own, own_name};
+use lang_expr::tree::Node as Part;
+use lang_expr::{Names, Outside, Slot, Source, Store, Type, Value, Wanted};
+use lang_text::problem::{Problem, Words};
+
+/// All expressions with their names and values.
+#[derive(Clone, Debug)]
+pub(super) struct Formulas {
+    sources: Vec<Source>,
+    /// Own names that each text reads, as bits in the order of [`crate::program::Text::own`].
+    reads: Vec<u8>,
+    names: Names,
+    store: Store,
+    /// Own names of each node that has any, by their places; those that no text reads have none.
+    own: Vec<Option<Box<[Option<Slot>]>>>,
+    /// Texts of each node: the first one, and how many.
+    of_node: Vec<(Formula, u32)>,
+    /// Whether there was no room for a name.
+    is_full: bool,
+}
+
+/// Why a text has no value.
+#[derive(Debug)]
+pub(super) enum Reason {
+    /// An own name has no value yet.
+    Unbound(&'static str),
+    /// An own name got a unit.
+    Unit(&'static str),
+    /// The language of expressions says so.
+    Problems(Vec<Problem>),
+}
+
+impl Formulas {
+    pub fn new(program: &Program) -> Self {
+        let mut formulas = Self {
+            sources: Vec::with_capacity(program.formulas.len()),
+            reads: Vec::with_capacity(program.formulas.len()),
+            names: Names::new(program.kit, COMPAT).strict(),
+            store: Store::default(),
+            own: vec![None; program.nodes.len()],
+            of_node: vec![(0, 0); program.nodes.len()],
+            is_full: false,
+        };
+        for (index, text) in (0..).zip(&program.formulas) {
+            formulas.add(index, text);
+        }
+        formulas
+    }
+
+    fn add(&mut self, index: Formula, text: &Text) {
+        let rename = |name: &str| {
+            let is_own = text.own.contains(&name);
+            is_own.then(|| own_name(name, text.node))
+        };
+        let source = Source::with_own_names(&text.text, text.wanted, &rename);
+        let mut bits = 0;
+        let node = text.node as usize;
+        let slots = self.own[node].get_or_insert_with(|| vec![None; text.own.len()].into());
+        for (at, name) in text.own.iter().enumerate() {
+            let own = own_name(name, text.node);
+            if source.names().any(|one| *one == *own) {
+                bits |= 1 << at;
+                slots[at] = self.names.slot(&own);
+                self.is_full |= slots[at].is_none();
+            }
+        }
+        let (first, count) = &mut self.of_node[node];
+        if *count == 0 {
+            *first = index;
+        }
+        *count = index + 1 - *first;
+        self.reads.push(bits);
+        self.sources.push(source);
+    }
+
+    /// Whether the program has more names than there is room for.
+    pub fn has_too_many_names(&self) -> bool {
+        self.is_full
+    }
+
+    /// The slot of an own name, if some text reads it.
+    fn slot(&self, id: NodeId, at: usize) -> Option<Slot> {
+        let slots = self.own[id as usize].as_ref()?;
+        slots.get(at).copied().flatten()
+    }
+
+    /// The value of an own name, if it has one.
+    pub fn own(&self, id: NodeId, at: usize, state: &State) -> Option<Value> {
+        let is_there = state.bound & !state.units & (1 << at) != 0;
+        let slot = self.slot(id, at).filter(|_| is_there)?;
+        self.store.get(slot).cloned()
+    }
+
+    /// Gives an own name of a node, by its place among them, the value of a token.
+    pub fn bind(&mut self, id: NodeId, at: usize, value: Value, state: &mut State) {
+        let Some(slot) = self.slot(id, at) else {
+            return;
+        };
+        let bit = 1 << at;
+        state.bound |= bit;
+        if super::values::is_unit(&value) {
+            state.units |= bit;
+            self.store.remove(slot);
+            return;
+        }
+        state.units &= !bit;
+        if !self.keeps_type(slot, &value) && self.names.retype(slot, &value) {
+            // What the texts have learned of the former type is void.
+            let (first, count) = self.of_node[id as usize];
+            for source in &mut self.sources[first as usize..(first + count) as usize] {
+                source.reread();
+            }
+        }
+        if self.store.set(slot, value).is_err() {
+            // All values together are too many; the text that reads it says that there is none.
+            state.bound &= !bit;
+        }
+    }
+
+    /// Whether a slot has a value whose type this one has as well: then nothing has to be inferred anew.
+    fn keeps_type(&self, slot: Slot, value: &Value) -> bool {
+        match (self.store.get(slot), value) {
+            (Some(Value::Int(_)), Value::Int(_))
+            | (Some(Value::Float(_)), Value::Float(_))
+            | (Some(Value::Bool(_)), Value::Bool(_))
+            | (Some(Value::Text(_)), Value::Text(_)) => true,
+            (Some(_) | None, _) => false,
+        }
+    }
+
+    /// The value of a text, once its own names are bound.
+    pub fn evaluate(
+        &mut self,
+        program: &Program,
+        index: Formula,
+        state: &State,
+        outside: &mut dyn Outside,
+    ) -> Result<Value, Reason> {
+        self.ready(program, index, state)?;
+        let source = &self.sources[index as usize];
+        lang_expr::evaluate(source, &self.names, &mut self.store, outside).map_err(Reason::Problems)
+    }
+
+    /// The truth of a text.
+    pub fn truth(
+        &mut self,
+        program: &Program,
+        index: Formula,
+        state: &State,
+        outside: &mut dyn Outside,
+    ) -> Result<bool, Reason> {
+        self.ready(program, index, state)?;
+        let source = &self.sources[index as usize];
+        lang_expr::evaluate_bool(source, &self.names, &mut self.store, outside)
+            .map_err(Reason::Problems)
+    }
+
+    fn ready(&mut self, program: &Program, index: Formula, state: &State) -> Result<(), Reason> {
+        let reads = self.reads[index as usize];
+        let missing = reads & !(state.bound & !state.units);
+        if missing != 0 {
+            let at = missing.trailing_zeros() as usize;
+            let name = program.formulas[index as usize].own[at];
+            let is_unit = state.units & (1 << at) != 0;
+            return Err(match is_unit {
+                true => Reason::Unit(name),
+                false => Reason::Unbound(name),
+            });
+        }
+        let source = &mut self.sources[index as usize];
+        lang_expr::analyse(source, &mut self.names).map_err(Reason::Problems)
+    }
+
+    /// The value of a text that came as a token; nothing if it would change variables.
+    pub fn evaluate_text(
+        &mut self,
+        text: &str,
+        wanted: Wanted,
+        outside: &mut dyn Outside,
+    ) -> Result<Option<Value>, Vec<Problem>> {
+        let mut source = Source::new(text, wanted);
+        let assigns = |part: &Part| matches!(part, Part::Assign { .. });
+        let is_new = |name: &str| self.names.find(name).is_none();
+        if source.tree().nodes.iter().any(assigns) || source.names().any(is_new) {
+            return Ok(None);
+        }
+        lang_expr::analyse(&mut source, &mut self.names)?;
+        lang_expr::evaluate(&source, &self.names, &mut self.store, outside).map(Some)
+    }
+
+    /// Gives a variable of the project a value.
+    pub fn assign(&mut self, name: &str, value: Value) -> Result<(), Words> {
+        let Some(slot) = self.names.declare(name, &value) else {
+            return Err(words::too_many_variables());
+        };
+        match (self.names.type_of(slot), &value) {
+            (Type::Int, Value::Float(_)) => _ = self.names.retype(slot, &value),
+            (Type::Float, Value::Int(_)) => {}
+            (of, value) if !is_of(of, value) => {
+                let wanted = self.names.type_name(of);
+                return Err(words::wrong_type(name, value, &wanted));
+            }
+            _ => {}
+        }
+        let set = self.store.set(slot, value);
+        set.map_err(|_| words::too_many_variables())
+    }
+
+    /// The value of a variable of the project.
+    pub fn get(&self, name: &str) -> Option<Value> {
+        self.store.get(self.names.find(name)?).cloned()
+    }
+
+    /// Variables of the project that have values.
+    pub fn variables(&self) -> impl Iterator<Item = (&str, &Value)> {
+        let all = self.names.variables();
+        all.filter(|(_, name, _)| !is_own(name))
+            .filter_map(|(slot, name, _)| Some((name, self.store.get(slot)?)))
+    }
+}
+
+/// Whether a value has a type; what is not known has every type.
+fn is_of(of: Type, value: &Value) -> bool {
+    match of {
+        Type::Any | Type::Open => true,
+        Type::Bool => matches!(value, Value::Bool(_)),
+        Type::Int => matches!(value, Value::Int(_)),
+        Type::Float => matches!(value, Value::Float(_)),
+        Type::Text => matches!(value, Value::Text(_) | Value::Unset),
+        Type::Nil => matches!(value, Value::Nil),
+        Type::Function => false,
+        Type::Table(_) => matches!(value, Value::List(_)),
+    }
+}

@@ -1,0 +1,293 @@
+//! Readings: one of each sensor in an instant, polls of blocks that give them, the gamepad and messages.
+//!
+//! Owns what is asked of the robot and when. Knows no order of tokens.
+
+use super::state::Memory;
+use super::values::list;
+use super::words;
+use super::{Env, Halt, Machine};
+use crate::limits;
+use crate::program::{Camera, NodeId, Op, Read, Source};
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::{Port, Sort};
+use lang_expr::reserved::{SENSORS, SensorIndex};
+use lang_expr::{Outside, Value};
+use std::collections::BTreeMap;
+
+/// What sensors say in an instant: each is asked once, so that all blocks see the same.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Readings {
+    known: BTreeMap<Port, Option<Value>>,
+    scratch: Vec<i32>,
+}
+
+impl Readings {
+    /// A new instant.
+    pub fn begin(&mut self) {
+        self.known.clear();
+    }
+
+    /// What a port says; `None` if nothing is plugged in there.
+    pub fn of(&mut self, port: Port, brick: &mut dyn Brick) -> Option<Value> {
+        if let Some(known) = self.known.get(&port) {
+            return known.clone();
+        }
+        let value = match port.sort() {
+            Sort::Vector => {
+                self.scratch.clear();
+                let is_there = brick.vector(port, &mut self.scratch);
+                is_there.then(|| Value::ints(&self.scratch))
+            }
+            Sort::Motor | Sort::Servo | Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
+                brick.scalar(port).map(Value::Int)
+            }
+        };
+        self.known.insert(port, value.clone());
+        value
+    }
+
+    /// What a sensor variable says.
+    fn variable(&mut self, sensor: SensorIndex, brick: &mut dyn Brick) -> Option<Value> {
+        let name = SENSORS.get(usize::from(sensor))?.name;
+        self.of(Port::shown_by(name)?, brick)
+    }
+
+    /// What a sensor of the camera says.
+    fn camera(&mut self, camera: Camera, brick: &mut dyn Brick) -> Option<Value> {
+        match camera {
+            Camera::Line => self.of(Port::named("LineSensorPort")?, brick),
+            Camera::Color => self.of(Port::named("ColorSensorPort")?, brick),
+            Camera::Object => {
+                let parts = [
+                    "ObjectSensorXPort",
+                    "ObjectSensorYPort",
+                    "ObjectSensorSizePort",
+                ];
+                let values: Option<Vec<Value>> = parts
+                    .into_iter()
+                    .map(|part| self.of(Port::named(part)?, brick))
+                    .collect();
+                values.map(list)
+            }
+        }
+    }
+}
+
+/// The robot as expressions see it.
+pub(super) struct Robot<'a> {
+    pub readings: &'a mut Readings,
+    pub brick: &'a mut dyn Brick,
+    pub now: u32,
+    /// The first sensor that said nothing.
+    pub missing: Option<SensorIndex>,
+}
+
+impl Outside for Robot<'_> {
+    fn sensor(&mut self, sensor: SensorIndex) -> Value {
+        match self.readings.variable(sensor, self.brick) {
+            Some(value) => value,
+            None => {
+                self.missing.get_or_insert(sensor);
+                Value::Nil
+            }
+        }
+    }
+
+    fn time(&mut self) -> i32 {
+        i32::try_from(self.now).unwrap_or(i32::MAX)
+    }
+
+    fn print(&mut self, text: &str) {
+        self.brick.command(Command::Console { text });
+    }
+
+    fn random(&mut self, below: i32) -> i32 {
+        let most = below.saturating_sub(1).max(0);
+        self.brick.random_of_function(0, most)
+    }
+}
+
+impl Machine {
+    /// A block gives readings from now on. A sensor that is not there ends the program at once.
+    pub(super) fn subscribe(
+        &mut self,
+        id: NodeId,
+        source: &Source,
+        env: &mut Env<'_>,
+    ) -> Result<(), Halt> {
+        if let Err(at) = self.subscribed.binary_search(&id) {
+            let is_there = match source {
+                Source::Sensor(_) | Source::Detect(_) => self.reading(source, env).is_some(),
+                Source::Encoders(_) | Source::Gamepad | Source::Receive => true,
+            };
+            if !is_there {
+                return Err(self.fault(id, words::no_reading(), env));
+            }
+            self.subscribed.insert(at, id);
+        }
+        Ok(())
+    }
+
+    /// What a block would give now that gives one sensor's readings.
+    fn reading(&mut self, source: &Source, env: &mut Env<'_>) -> Option<Value> {
+        match source {
+            Source::Sensor(sensor) => self.readings.variable(*sensor, env.brick),
+            Source::Detect(camera) => self.readings.camera(*camera, env.brick),
+            Source::Encoders(_) | Source::Gamepad | Source::Receive => None,
+        }
+    }
+
+    /// The reading of a port for a block that asks for it now.
+    pub(super) fn read_port(&mut self, read: Read, env: &mut Env<'_>) -> Option<Value> {
+        match read {
+            Read::Device(port) => self.readings.of(port, env.brick),
+            Read::Part(port, part) => {
+                let all = self.readings.of(port, env.brick)?;
+                let items = super::values::items(&all).ok()?;
+                items.get(usize::from(part)).cloned()
+            }
+            Read::Told(motor) => {
+                let power = self.told.get(&motor).copied().unwrap_or_default();
+                Some(Value::Int(power))
+            }
+        }
+    }
+
+    /// Blocks that give readings do so.
+    pub(super) fn poll(&mut self, env: &mut Env<'_>) -> Result<(), Halt> {
+        for at in 0..self.subscribed.len() {
+            let id = self.subscribed[at];
+            let Op::Source(source) = &env.program.node(id).op else {
+                continue;
+            };
+            match source {
+                Source::Sensor(_) | Source::Detect(_) => match self.reading(source, env) {
+                    Some(value) => self.send(id, SENSOR_OUT, value, env)?,
+                    None => self.gap(id, env),
+                },
+                Source::Encoders(devices) => self.poll_encoders(id, devices, env)?,
+                Source::Gamepad => self.poll_gamepad(id, env)?,
+                Source::Receive => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// A reading is missing; told once for each block.
+    fn gap(&mut self, id: NodeId, env: &mut Env<'_>) {
+        if let Memory::Readings { has_failed } | Memory::Offsets(_, has_failed) =
+            &mut self.states[id as usize].memory
+            && !std::mem::replace(has_failed, true)
+            && self.warnings.len() < lang_text::limits::PROBLEMS
+        {
+            let mut problem = lang_text::problem::Problem::warning(words::reading_failed());
+            problem.place = env.program.place(id);
+            self.warnings.push(problem);
+        }
+    }
+
+    fn poll_encoders(
+        &mut self,
+        id: NodeId,
+        devices: &[(Port, bool); 4],
+        env: &mut Env<'_>,
+    ) -> Result<(), Halt> {
+        let Memory::Offsets(offsets, _) = self.states[id as usize].memory else {
+            return Ok(());
+        };
+        for (at, ((port, _), offset)) in devices.iter().zip(offsets).enumerate() {
+            let Some(offset) = offset else {
+                continue;
+            };
+            match self.readings.of(*port, env.brick) {
+                Some(value) => {
+                    let degrees = value.to_int().saturating_add(offset);
+                    self.send(id, ENCODER_OUT + at as u8, Value::Int(degrees), env)?;
+                }
+                None => self.gap(id, env),
+            }
+        }
+        Ok(())
+    }
+
+    fn poll_gamepad(&mut self, id: NodeId, env: &mut Env<'_>) -> Result<(), Halt> {
+        let Memory::Pads {
+            mut pressed,
+            mut wheel,
+        } = self.states[id as usize].memory
+        else {
+            return Ok(());
+        };
+        for (at, was_pressed) in pressed.iter_mut().enumerate() {
+            let number = Value::Int(at as i32 + 1);
+            let is_pressed = self.pad_number(&format!("gamepadPad{}Pressed", at + 1), env) != 0;
+            let port = Port::shown_by(&format!("gamepadPad{}", at + 1));
+            let place = port.and_then(|port| self.readings.of(port, env.brick));
+            let place = place
+                .as_ref()
+                .and_then(|place| super::values::items(place).ok());
+            match (is_pressed, *was_pressed, place) {
+                (true, _, Some([x, y, ..])) => {
+                    let token = list(vec![number, x.clone(), y.clone()]);
+                    self.send(id, PAD_OUT, token, env)?;
+                }
+                (false, true, _) => {
+                    let token = list(vec![number, Value::Int(0), Value::Int(0)]);
+                    self.send(id, PAD_OUT, token, env)?;
+                }
+                _ => {}
+            }
+            *was_pressed = is_pressed;
+        }
+        for button in 1..=5 {
+            let value = self.pad_number(&format!("gamepadButton{button}"), env);
+            if value != 0 {
+                let token = list(vec![Value::Int(button), Value::Int(value)]);
+                self.send(id, BUTTON_OUT, token, env)?;
+            }
+        }
+        let turned = self.pad_number("gamepadWheel", env);
+        if wheel != Some(turned) {
+            if wheel.is_some() || turned != 0 {
+                self.send(id, WHEEL_OUT, Value::Int(turned), env)?;
+            }
+            wheel = Some(turned);
+        }
+        self.states[id as usize].memory = Memory::Pads { pressed, wheel };
+        Ok(())
+    }
+
+    /// A number of the gamepad; 0 if there is none.
+    fn pad_number(&mut self, variable: &str, env: &mut Env<'_>) -> i32 {
+        let port = Port::shown_by(variable);
+        let value = port.and_then(|port| self.readings.of(port, env.brick));
+        value.map_or(0, |value| value.to_int())
+    }
+
+    /// Messages of other robots go to all blocks that wait for them.
+    pub(super) fn receive(&mut self, env: &mut Env<'_>) -> Result<(), Halt> {
+        let receives =
+            |id: &NodeId| matches!(env.program.node(*id).op, Op::Source(Source::Receive));
+        let receivers: Vec<NodeId> = self.subscribed.iter().copied().filter(receives).collect();
+        if receivers.is_empty() {
+            return Ok(());
+        }
+        for _ in 0..limits::MAIL_MAX {
+            let Some((sender, text)) = env.brick.letter() else {
+                break;
+            };
+            let token = list(vec![Value::Int(sender.unwrap_or(0)), Value::text(text)]);
+            for &id in &receivers {
+                self.send(id, SENSOR_OUT, token.clone(), env)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Ports of the blocks that give readings; a test holds them against the table.
+pub(super) const SENSOR_OUT: u8 = 1;
+pub(super) const ENCODER_OUT: u8 = 6;
+pub(super) const PAD_OUT: u8 = 1;
+pub(super) const BUTTON_OUT: u8 = 2;
+pub(super) const WHEEL_OUT: u8 = 3;

@@ -1,0 +1,220 @@
+//! What goes wrong while a data-flow program runs, in words.
+//!
+//! Owns the texts in both languages. Where something is wrong is known to who finds it.
+
+use crate::limits;
+pub(crate) use crate::words::{bad_width, loop_step, no_choice};
+use crate::words::{list, short};
+use lang_expr::Value;
+use lang_text::problem::Words;
+
+/// What a value is, as a person reads it.
+fn what(value: &Value) -> String {
+    short(&value.brief())
+}
+
+pub(crate) fn unit() -> Words {
+    Words::new(
+        "a control token came here, which has no value: connect a data output",
+        "сюда пришёл управляющий сигнал без значения: присоедините выход с данными",
+    )
+}
+
+pub(crate) fn unit_read(name: &str) -> Words {
+    Words::new(
+        format!("{name} got a control token, which has no value: connect a data output"),
+        format!("в {name} пришёл управляющий сигнал без значения: присоедините выход с данными"),
+    )
+}
+
+pub(crate) fn unbound(name: &str) -> Words {
+    Words::new(
+        format!("{name} has no value yet"),
+        format!("у {name} ещё нет значения"),
+    )
+}
+
+pub(crate) fn no_whole(value: &Value) -> Words {
+    Words::new(
+        format!("{} is not a whole number", what(value)),
+        format!("{} не целое число", what(value)),
+    )
+}
+
+pub(crate) fn no_truth(value: &Value) -> Words {
+    Words::new(
+        format!("{} is neither true nor false", what(value)),
+        format!("{} ни истина, ни ложь", what(value)),
+    )
+}
+
+pub(crate) fn no_text(value: &Value) -> Words {
+    Words::new(
+        format!("{} is not a text", what(value)),
+        format!("{} не текст", what(value)),
+    )
+}
+
+pub(crate) fn no_list(value: &Value) -> Words {
+    Words::new(
+        format!("{} is not a list", what(value)),
+        format!("{} не список", what(value)),
+    )
+}
+
+pub(crate) fn wrong_count(found: usize, wanted: usize) -> Words {
+    Words::new(
+        format!("a list of {wanted} numbers is needed, this one has {found} items"),
+        format!("нужен список из {wanted} чисел, а в этом элементов: {found}"),
+    )
+}
+
+pub(crate) fn list_short(found: usize, wanted: usize) -> Words {
+    Words::new(
+        format!("a list of at least {wanted} items is needed, this one has {found}"),
+        format!("нужен список хотя бы из {wanted} элементов, а в этом: {found}"),
+    )
+}
+
+pub(crate) fn too_large_token() -> Words {
+    Words::new(
+        format!(
+            "this value is too large for a token: a list has at most {} items, a text at most {} bytes",
+            limits::ITEMS_MAX,
+            limits::TEXT_BYTES_MAX
+        ),
+        format!(
+            "это значение слишком велико: в списке не больше {} элементов, в тексте не больше {} байт",
+            limits::ITEMS_MAX,
+            limits::TEXT_BYTES_MAX
+        ),
+    )
+}
+
+pub(crate) fn wrong_type(name: &str, value: &Value, wanted: &str) -> Words {
+    Words::new(
+        format!(
+            "the variable {} is of type {wanted}, and {} is not",
+            short(name),
+            what(value)
+        ),
+        format!(
+            "переменная {} имеет тип {wanted}, а {} нет",
+            short(name),
+            what(value)
+        ),
+    )
+}
+
+pub(crate) fn too_many_variables() -> Words {
+    Words::new(
+        "the program has too many variables, or its values are too large together",
+        "в программе слишком много переменных, или все значения вместе слишком велики",
+    )
+}
+
+pub(crate) fn queue_full(places: u16) -> Words {
+    Words::new(
+        format!(
+            "{places} tokens wait here already, and the policy of this queue is error: the other inputs get fewer tokens"
+        ),
+        format!(
+            "здесь уже ждут значений: {places}, а правило этой очереди - error: на другие входы значений приходит меньше"
+        ),
+    )
+}
+
+pub(crate) fn queue_overflows(places: u16) -> Words {
+    Words::new(
+        format!(
+            "{places} tokens wait here already, so the oldest ones are lost: the other inputs get fewer tokens; `latest` keeps only the newest one"
+        ),
+        format!(
+            "здесь уже ждут значений: {places}, поэтому самые старые пропадают: на другие входы значений приходит меньше; `latest` хранит только новейшее"
+        ),
+    )
+}
+
+pub(crate) fn busy() -> Words {
+    Words::new(
+        "tokens that come while it waits are lost",
+        "значения, пришедшие во время ожидания, пропадают",
+    )
+}
+
+pub(crate) fn runaway(most: u32, blocks: &[String]) -> Words {
+    let names = list(blocks.iter().map(String::as_str));
+    Words::new(
+        format!(
+            "blocks have reacted {most} times within one instant without an end ({names}): put a 'Wait and send' into the cycle"
+        ),
+        format!(
+            "блоки сработали {most} раз в одно мгновение, и конца не видно ({names}): поставьте в цикл ожидание"
+        ),
+    )
+}
+
+pub(crate) fn too_many_tokens(most: usize) -> Words {
+    Words::new(
+        format!("more than {most} tokens are on their way within one instant"),
+        format!("в одно мгновение в пути больше {most} значений"),
+    )
+}
+
+pub(crate) fn assigning_text() -> Words {
+    Words::new(
+        "a text that comes as a token is computed, and must not assign variables",
+        "текст, пришедший как значение, вычисляется и не может менять переменные",
+    )
+}
+
+pub(crate) fn no_reading() -> Words {
+    Words::new(
+        "the robot has no such device, or it says nothing",
+        "у робота нет такого устройства, или оно молчит",
+    )
+}
+
+pub(crate) fn reading_failed() -> Words {
+    Words::new(
+        "the sensor says nothing for a while, so no tokens come from it",
+        "датчик временно молчит, поэтому значений от него нет",
+    )
+}
+
+pub(crate) fn sensor_missing(name: &str) -> Words {
+    Words::new(
+        format!("{name} says nothing: the robot has no such sensor"),
+        format!("{name} молчит: у робота нет такого датчика"),
+    )
+}
+
+pub(crate) fn other_camera(text: &str) -> Words {
+    Words::new(
+        format!(
+            "'{}' is not the sensor of the camera that is wanted here (line, object or color)",
+            short(text)
+        ),
+        format!(
+            "'{}' не тот датчик камеры, который здесь нужен (line, object или color)",
+            short(text)
+        ),
+    )
+}
+
+pub(crate) fn no_file(file: &str) -> Words {
+    Words::new(
+        format!("there is no file '{}' that could be read here", short(file)),
+        format!(
+            "файла '{}', который можно прочитать, здесь нет",
+            short(file)
+        ),
+    )
+}
+
+pub(crate) fn file_too_long(file: &str, most: usize) -> Words {
+    Words::new(
+        format!("'{}' has more than {most} words or lines", short(file)),
+        format!("в '{}' больше {most} слов или строк", short(file)),
+    )
+}

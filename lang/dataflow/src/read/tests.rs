@@ -1,0 +1,163 @@
+//! Saves to projects, and projects to saves.
+
+use super::*;
+use crate::machine::fixtures::{diagram, project as made};
+use crate::save::save;
+use lang_diagram::read::read;
+
+/// A project as it is after it was written and read again, with what was told.
+fn again(project: &Project) -> (Project, Vec<String>) {
+    let bytes = save(project).write().expect("a save");
+    let opened = read(&bytes).expect("a project");
+    assert!(opened.problems.is_empty(), "{:?}", opened.problems);
+    assert_eq!(language(&opened.save), Language::Dataflow);
+    let (project, problems) = super::project(&opened.save);
+    (project, problems.iter().map(ToString::to_string).collect())
+}
+
+/// Ids as saves have them.
+fn with_ids(mut project: Project) -> Project {
+    let long = |id: &str, element: &str, part: &str| {
+        let unique: String = id.chars().filter(char::is_ascii_alphanumeric).collect();
+        format!("qrm:/RobotsDataFlowMetamodel/RobotsDataFlowDiagram/{element}/{part}{unique}")
+    };
+    let calls = |id: &str| long(id, SUBPROGRAM, "logical");
+    for diagram in &mut project.diagrams {
+        let element = match diagram.kind {
+            DiagramKind::Main => MAIN,
+            DiagramKind::Subprogram => SUBPROGRAM,
+        };
+        diagram.id = long(&diagram.id, element, "");
+        diagram.logical = long(&diagram.logical, element, "logical");
+        for block in &mut diagram.blocks {
+            block.id = long(&block.id, &block.element, "");
+            block.logical = format!("{}-logical", block.id);
+            block.calls = block.calls.as_deref().map(calls);
+        }
+        for edge in &mut diagram.edges {
+            edge.id = long(&edge.id, EDGE, "");
+        }
+    }
+    project
+}
+
+#[test]
+fn what_was_written_is_read_as_it_was() {
+    let inner = diagram(
+        "inner part",
+        DiagramKind::Subprogram,
+        "I Input port {identifier=I0}\nO Output port {identifier=O1}\nI.OUT > O.DATA",
+    );
+    let mut main = diagram(
+        "main",
+        DiagramKind::Main,
+        "A Sensor {VarName=sensorD1}\nC User block of inner part\nF Text programming {IO0=I0 < 3 & \"x\"}\nM Motors\nA.OUT > C.I0\nA.OUT > F.I0\nC.O1 > M.M3",
+    );
+    main.blocks[0].position = (-12.5, 1e6);
+    main.edges[0].policy = Some(Policy::Latest);
+    main.edges[1].capacity = Some(7);
+    main.edges[2].path = vec![(1.0, 2.0), (3.5, 4.0), (5.0, 6.0)];
+    main.edges[2].to = None;
+    let mut project = with_ids(made(vec![main, inner]));
+    project
+        .meta
+        .insert("lastKitId".to_owned(), "trikV62Kit".to_owned());
+    let (read, told) = again(&project);
+    assert!(told.is_empty(), "{told:?}");
+    project.meta.insert(
+        "RobotsDataFlowMetamodelVersion".to_owned(),
+        "1.0.0".to_owned(),
+    );
+    assert_eq!(format!("{project:#?}"), format!("{read:#?}"));
+}
+
+#[test]
+fn former_elements_keep_their_meaning() {
+    let mut main = diagram(
+        "main",
+        DiagramKind::Main,
+        "A Sensor\nM Motors\nS Say\nA.OUT > M.M3\nM.CF_OUT > S.CF_IN",
+    );
+    main.blocks[0].element = "SensorVar".to_owned();
+    main.blocks[1].element = "Motors".to_owned();
+    // M3 was 3 then, and CF_OUT 2.
+    main.edges[0].to = Some(End { block: 1, port: 3 });
+    main.edges[1].from = Some(End { block: 1, port: 2 });
+    let (read, told) = again(&with_ids(made(vec![main])));
+    let ports: Vec<_> = read.diagrams[0]
+        .edges
+        .iter()
+        .map(|edge| (edge.from, edge.to))
+        .collect();
+    let end = |block, port| Some(End { block, port });
+    assert_eq!(ports, [(end(0, 1), end(1, 4)), (end(1, 1), end(2, 0))]);
+    assert_eq!(told.len(), 2);
+    assert!(
+        told[1].contains("'Motors' is the name that 'DFMotorsBlock' had before 2016-07-12"),
+        "{told:?}"
+    );
+    let mut fork = diagram(
+        "main",
+        DiagramKind::Main,
+        "V Value generator\nF Text programming\nS Say\nV.OUT > F.I0\nF.O0 > S.CF_IN",
+    );
+    fork.blocks[1].element = "ForkNode".to_owned();
+    fork.edges[0].to = Some(End { block: 1, port: 0 });
+    fork.edges[1].from = Some(End { block: 1, port: 1 });
+    let (read, _) = again(&with_ids(made(vec![fork])));
+    assert_eq!(read.diagrams[0].edges[0].to, end(1, 0));
+    assert_eq!(read.diagrams[0].edges[1].from, end(1, 1));
+    let checked = crate::check::check(&read);
+    assert!(!checked.has_errors());
+    let mut machine = crate::machine::Machine::new(std::rc::Rc::new(checked.program));
+    let mut robot = lang_diagram::stand_in::StandIn::default();
+    machine.step(0, &mut robot, &mut crate::machine::trace::Deaf);
+    assert_eq!(machine.errors(), []);
+}
+
+#[test]
+fn strange_saves_are_told_and_kept() {
+    let mut main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
+    main.blocks[1].element = "DFTeleportBlock".to_owned();
+    main.edges[0].to = Some(End { block: 1, port: 99 });
+    let (read, told) = again(&with_ids(made(vec![main])));
+    assert!(told.is_empty());
+    assert!(read.diagrams[0].blocks[1].row.is_none());
+    assert_eq!(
+        read.diagrams[0].edges[0].to,
+        Some(End { block: 1, port: 99 })
+    );
+    let lowered = crate::lower::lower(&read);
+    let words: Vec<String> = lowered.problems.iter().map(ToString::to_string).collect();
+    assert!(
+        words[0].contains("the data-flow language has no block 'DFTeleportBlock'"),
+        "{words:?}"
+    );
+}
+
+#[test]
+fn numbers_of_ports_are_rounded_and_nonsense_is_no_port() {
+    for (text, port) in [
+        ("1", 1),
+        ("1.4", 1),
+        ("1.5", 2),
+        ("0.5", 1),
+        ("-0.2", 0),
+        ("-1", -1),
+        ("", -1),
+        ("nan", -1),
+        ("1e300", i32::MAX),
+        ("-1e300", i32::MIN),
+    ] {
+        assert_eq!(number(text), port, "{text}");
+    }
+}
+
+#[test]
+fn the_first_main_diagram_says_which_language_runs() {
+    let control = lang_diagram::sketch::Sketch::new().qrs().expect("a save");
+    let opened = read(&control).expect("a project");
+    assert_eq!(language(&opened.save), Language::Diagram);
+    let (project, _) = super::project(&opened.save);
+    assert!(project.diagrams.is_empty() && project.main.is_none());
+}

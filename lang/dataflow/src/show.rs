@@ -1,0 +1,123 @@
+//! A data-flow project for the eye: its program in sentences, and its diagrams as pictures.
+//!
+//! Owns what blocks and ends of edges are called, and which properties are worth saying. Knows no files and no terminal.
+
+mod picture;
+mod sentences;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use picture::picture;
+pub use sentences::sentences;
+
+use crate::blocks::{Content, Property};
+use crate::project::{Block, Diagram};
+use lang_text::problem::Locale;
+use std::collections::HashMap;
+use words::Word;
+
+/// The kind of a block, as the editor has it.
+fn kind(block: &Block, locale: Locale) -> String {
+    match block.row {
+        Some(row) => row.shown_in(locale).to_owned(),
+        None => format!(
+            "{} {}",
+            Word::Unknown.text(locale),
+            shortened(&block.element, 60)
+        ),
+    }
+}
+
+/// What each block of a diagram is called: by its caption, or by its kind if it has none, with a number if others are
+/// called the same.
+fn callings(diagram: &Diagram, locale: Locale) -> Vec<String> {
+    let name = |block: &Block| match block.name.trim() {
+        "" => kind(block, locale),
+        caption => shortened(caption, 60),
+    };
+    let names: Vec<String> = diagram.blocks.iter().map(name).collect();
+    let mut counts: HashMap<&str, (usize, usize)> = HashMap::new();
+    for name in &names {
+        counts.entry(name).or_default().1 += 1;
+    }
+    let mut all = Vec::with_capacity(names.len());
+    for name in &names {
+        let number = counts.get_mut(name.as_str()).and_then(|(passed, count)| {
+            *passed += 1;
+            (*count > 1).then_some(*passed)
+        });
+        all.push(match number {
+            Some(number) => format!("{name} ({number})"),
+            None => name.clone(),
+        });
+    }
+    all
+}
+
+/// The name or the number of a port.
+fn port(block: &Block, port: i32) -> String {
+    let at = usize::try_from(port).ok();
+    let known = at.and_then(|at| block.row?.ports.get(at));
+    known.map_or_else(|| port.to_string(), |port| port.name.to_owned())
+}
+
+/// The name that the editor shows, without the sign that it shows between a name and its value.
+fn shown(property: &Property) -> &'static str {
+    property.shown.trim_end_matches(['=', ':'])
+}
+
+/// A property that says something.
+struct Changed<'a> {
+    /// The name that the editor shows.
+    name: &'a str,
+    text: &'a str,
+    is_flag: bool,
+}
+
+/// Properties that are not those of a new block, then those that the row does not know.
+fn changed(block: &Block) -> Vec<Changed<'_>> {
+    let known = block.row.map_or(&[][..], |row| row.properties);
+    let mut all = Vec::new();
+    for property in known {
+        let text = block.properties.get(property.name);
+        if let Some(text) = text.filter(|text| *text != property.default) {
+            all.push(Changed {
+                name: shown(property),
+                text,
+                is_flag: property.content == Content::Flag,
+            });
+        }
+    }
+    for (name, text) in &block.properties {
+        if known.iter().all(|property| property.name != name) {
+            all.push(Changed {
+                name,
+                text,
+                is_flag: false,
+            });
+        }
+    }
+    all
+}
+
+/// One line, not too long, without signs that change how others are seen.
+fn shortened(text: &str, most: usize) -> String {
+    let mut out = String::new();
+    for (count, letter) in text.trim().chars().enumerate() {
+        if count >= most {
+            out.push_str("...");
+            break;
+        }
+        match letter {
+            '\n' => out.push_str("; "),
+            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' => {
+                out.push(' ');
+            }
+            letter if letter.is_control() => out.push(' '),
+            letter => out.push(letter),
+        }
+    }
+    out
+}

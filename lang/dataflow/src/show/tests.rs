@@ -1,0 +1,184 @@
+//! Sentences and pictures of small projects, with friendly and hostile texts.
+
+use super::{picture, sentences};
+use crate::blocks;
+use crate::project::{Edge, End, Project};
+use crate::text;
+use lang_text::problem::Locale;
+
+fn project(source: &str) -> Project {
+    text::read(source).unwrap_or_else(|problems| panic!("{problems:?}"))
+}
+
+/// A program in which there is one of all.
+const SMALL: &str = "\
+diagram \"Wall follower\"
+  A: Sensor(VarName = sensorD1)
+  F: \"Text programming\"(IO0 = `u = max(0-30, min(30, 2*(I0-20)))`, IO1 = `50 - u`, synch = true)
+  C: If(condition = `data < 25`) named \"Near?\"
+  call: \"User block\" of \"Avoid\"
+  wait1: \"Wait and send\"(time = 100) named \"\"
+  wait2: \"Wait and send\"(time = \"\", \"keep\" = true) named \"\"
+  M: Motors(synch = true, M3Power = 0) named Motors
+  X: unknown \"FutureBlock\" named X
+  A.OUT -> F.I0
+  A.OUT -> C.DATA
+  C.TRUE -> call.I0
+  C.FALSE -> wait1.CF_IN
+  wait1.CF_OUT -> wait2.CF_IN capacity 3
+  F.O1 -> M.M3 latest
+  call.O0 -> M.M4 fifo 16
+  wait2.CF_OUT -> X.4 error
+  X.9 -> nowhere
+  nowhere -> M.CF_IN
+
+diagram \"Other\"
+  S: Stop
+
+subprogram \"Avoid\"
+  I: \"Input port\"
+  O: \"Output port\"
+  I.OUT -> O.DATA
+  lost: \"User block\" of id \"qrm:/gone\"
+";
+
+#[test]
+fn sentences_say_what_blocks_are_and_where_tokens_go() {
+    let said = sentences(&project(SMALL), Locale::English);
+    insta::assert_snapshot!("sentences", said);
+}
+
+#[test]
+fn sentences_are_in_russian_too() {
+    let said = sentences(&project(SMALL), Locale::Russian);
+    insta::assert_snapshot!("sentences_in_russian", said);
+}
+
+#[test]
+fn a_picture_has_blocks_ports_edges_and_words() {
+    insta::assert_snapshot!("picture", picture(&project(SMALL), 0, Locale::English));
+}
+
+#[test]
+fn a_picture_is_xml_whatever_the_texts_say() {
+    for text in [
+        "M3",
+        "</text><script>alert(1)</script>",
+        "\"&<>'\u{0}\u{ffff}\u{202e}",
+    ] {
+        let mut project = project(SMALL);
+        let diagram = &mut project.diagrams[0];
+        diagram.name = text.to_owned();
+        for block in &mut diagram.blocks {
+            block.name = text.to_owned();
+            block.id = text.to_owned();
+            block.element = text.to_owned();
+            block.properties.insert(text.to_owned(), text.to_owned());
+            block.properties.insert("IO0".to_owned(), text.to_owned());
+        }
+        diagram.edges[0].id = text.to_owned();
+        let svg = picture(&project, 0, Locale::Russian);
+        let root = lang_text::xml::parse(&svg).unwrap_or_else(|error| panic!("{error:?}\n{svg}"));
+        assert_eq!(root.name, "svg");
+        assert!(!svg.contains("<script"));
+        assert_eq!(svg.matches("<rect ").count(), 8);
+        // Without a path, the edges that hang loose are nowhere.
+        assert_eq!(svg.matches("<polyline").count(), 8);
+        let said = sentences(&project, Locale::English);
+        assert!(!said.contains(['\u{0}', '\u{202e}']), "{said}");
+    }
+}
+
+/// All numbers of attributes that begin so.
+fn points(svg: &str) -> Vec<(f64, f64)> {
+    let lists = svg
+        .split("points=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next());
+    let pairs = lists
+        .flat_map(|list| list.split(' '))
+        .filter_map(|pair| pair.split_once(','));
+    pairs
+        .map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()))
+        .collect()
+}
+
+#[test]
+fn edges_go_from_port_to_port_by_their_inner_corners() {
+    let mut project = project(
+        "diagram a\n L: Loop at 100, 200\n S: Say at 400, 50\n L.OUT -> S.DATA via 0, 0; 300, 268; 300, 112; 9, 9\n \
+         nowhere -> S.CF_IN via 1, 2; 3, 4\n",
+    );
+    let ways = [
+        (202.0, 268.0),
+        (300.0, 268.0),
+        (300.0, 112.0),
+        (402.0, 112.0),
+    ];
+    let svg = picture(&project, 0, Locale::English);
+    assert_eq!(points(&svg)[..4], ways);
+    assert_eq!(points(&svg)[4..], [(1.0, 2.0), (410.0, 66.0)]);
+    // An end at no port is at its block.
+    project.diagrams[0].edges[0].to = Some(End { block: 1, port: 77 });
+    assert_eq!(
+        points(&picture(&project, 0, Locale::English))[3],
+        (450.0, 107.5)
+    );
+}
+
+#[test]
+fn places_that_are_none_are_drawn_somewhere() {
+    let mut project = project(SMALL);
+    let diagram = &mut project.diagrams[0];
+    diagram.blocks[1].position = (f64::NAN, f64::INFINITY);
+    diagram.edges[0].path = vec![(f64::NAN, 1e300); 10_000];
+    diagram.edges[1].to = Some(End {
+        block: 1000,
+        port: i32::MIN,
+    });
+    let wild: Vec<Edge> = diagram.edges.clone();
+    diagram.edges.extend(wild);
+    let svg = picture(&project, 0, Locale::English);
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    assert!(svg.len() < 60_000, "{}", svg.len());
+    assert!(sentences(&project, Locale::English).contains("A.OUT -> nowhere"));
+}
+
+#[test]
+fn nothing_has_a_picture_too() {
+    for at in 0..2 {
+        let svg = picture(&project("diagram a"), at, Locale::English);
+        assert!(lang_text::xml::parse(&svg).is_ok(), "{svg}");
+    }
+    assert_eq!(sentences(&Project::default(), Locale::English), "");
+}
+
+#[test]
+fn what_is_too_much_is_counted() {
+    use std::fmt::Write as _;
+    let mut source = "diagram a\n".to_owned();
+    for at in 0..crate::limits::PICTURE_BLOCKS_MAX + 7 {
+        let _ = writeln!(source, "a{at}: If");
+    }
+    let svg = picture(&project(&source), 0, Locale::English);
+    assert_eq!(
+        svg.matches("<rect ").count(),
+        crate::limits::PICTURE_BLOCKS_MAX
+    );
+    assert!(svg.contains(">+ 7</text>"));
+}
+
+#[test]
+fn every_row_has_a_picture_with_all_its_ports() {
+    for row in blocks::table() {
+        let project = project(&format!("diagram a\nx: \"{}\"", row.shown));
+        let svg = picture(&project, 0, Locale::Russian);
+        assert_eq!(
+            svg.matches("<circle").count(),
+            row.ports.len(),
+            "{}",
+            row.element
+        );
+        assert!(svg.contains(row.russian));
+    }
+}

@@ -1,0 +1,332 @@
+//! What can be wrong with a data-flow program, in words.
+//!
+//! Owns the texts in both languages. Where something is wrong is known to who finds it.
+
+use crate::blocks::Direction;
+use lang_text::near;
+use lang_text::problem::Words;
+
+/// Names that a list is cut at.
+const LISTED: usize = 20;
+
+/// Names as a list, which is cut.
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    let more = if names.len() > LISTED { ", ..." } else { "" };
+    let shown = &names[..names.len().min(LISTED)];
+    format!("{}{more}", shown.join(", "))
+}
+
+/// The beginning of a text that may be very long.
+pub(crate) fn short(text: &str) -> String {
+    const SHOWN: usize = 60;
+    let mut shown: String = text.chars().take(SHOWN).collect();
+    if shown.len() < text.len() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+// Reading.
+
+pub(crate) fn lost_child(element: &str) -> Words {
+    Words::new(
+        format!(
+            "the diagram lists this {}, but its file is not in the save",
+            short(element)
+        ),
+        format!(
+            "диаграмма называет этот {}, но файла нет в сохранении",
+            short(element)
+        ),
+    )
+}
+
+pub(crate) fn not_graphical() -> Words {
+    Words::new(
+        "the diagram lists a logical object instead of a graphical one; it is left out",
+        "в диаграмме на месте графического объекта логический; он пропущен",
+    )
+}
+
+pub(crate) fn listed_twice() -> Words {
+    Words::new(
+        "it is listed twice; the first place counts",
+        "он указан дважды; считается первое место",
+    )
+}
+
+pub(crate) fn no_logical() -> Words {
+    Words::new(
+        "its logical object is missing, so its properties are not known: delete the block and draw it again",
+        "её логического объекта нет, поэтому свойства неизвестны: удалите блок и поставьте заново",
+    )
+}
+
+pub(crate) fn former_name(element: &str, now: &str) -> Words {
+    Words::new(
+        format!("'{element}' is the name that '{now}' had before 2016-07-12; it is read as that"),
+        format!("'{element}' - имя, которое '{now}' носил до 12.07.2016; читается как он"),
+    )
+}
+
+pub(crate) fn unknown_policy(word: &str) -> Words {
+    Words::new(
+        format!(
+            "a queue has no policy '{}': it is fifo, latest or error; fifo counts",
+            short(word)
+        ),
+        format!(
+            "у очереди нет правила '{}': оно fifo, latest или error; считается fifo",
+            short(word)
+        ),
+    )
+}
+
+pub(crate) fn unknown_capacity(word: &str) -> Words {
+    Words::new(
+        format!(
+            "'{}' is not a number of places from 1 to 1024; 1024 counts",
+            short(word)
+        ),
+        format!(
+            "'{}' не число мест от 1 до 1024; считается 1024",
+            short(word)
+        ),
+    )
+}
+
+// Blocks, ports, properties.
+
+pub(crate) fn no_main() -> Words {
+    Words::new(
+        "the project has no data-flow diagram that can be run",
+        "в проекте нет потоковой диаграммы, которую можно запустить",
+    )
+}
+
+pub(crate) fn unknown_element(element: &str) -> Words {
+    let known = crate::blocks::table().map(|row| row.element);
+    let near = near::did_you_mean(element, known);
+    Words::new(
+        format!(
+            "the data-flow language has no block '{}'{}",
+            short(element),
+            near.english
+        ),
+        format!(
+            "в потоковом языке нет блока '{}'{}",
+            short(element),
+            near.russian
+        ),
+    )
+}
+
+pub(crate) fn port_in_main() -> Words {
+    Words::new(
+        "input and output ports belong in subprograms: in a main diagram there is no call that they could belong to",
+        "входы и выходы бывают только в подпрограммах: у главной диаграммы нет вызова, к которому они относились бы",
+    )
+}
+
+pub(crate) fn calls_main() -> Words {
+    Words::new(
+        "it calls a main diagram; only subprograms can be called",
+        "он вызывает главную диаграмму; вызвать можно только подпрограмму",
+    )
+}
+
+pub(crate) fn calls_nothing() -> Words {
+    Words::new(
+        "the subprogram that it calls is not in the project, or is of the other language",
+        "подпрограммы, которую он вызывает, нет в проекте, или она на другом языке",
+    )
+}
+
+pub(crate) fn dangling() -> Words {
+    Words::new(
+        "this edge is not attached at both ends: attach it or delete it",
+        "эта линия присоединена не обоими концами: присоедините её или удалите",
+    )
+}
+
+pub(crate) fn twin_edge() -> Words {
+    Words::new(
+        "another edge connects the same two ports, so each token comes twice: delete one of them",
+        "те же два порта соединяет ещё одна линия, поэтому каждое значение приходит дважды: удалите одну из них",
+    )
+}
+
+pub(crate) fn no_port(number: i32, count: usize) -> Words {
+    let last = count.saturating_sub(1);
+    Words::new(
+        format!("it has no port {number}: its ports are 0 to {last}"),
+        format!("у него нет порта {number}: порты от 0 до {last}"),
+    )
+}
+
+pub(crate) fn wrong_way(port: &str, wanted: Direction) -> Words {
+    match wanted {
+        Direction::Out => Words::new(
+            format!(
+                "an edge begins at {port}, which is an input: draw it from an output to an input"
+            ),
+            format!("линия начинается у {port}, а это вход: проведите её от выхода ко входу"),
+        ),
+        Direction::In => Words::new(
+            format!(
+                "an edge ends at {port}, which is an output: draw it from an output to an input"
+            ),
+            format!("линия кончается у {port}, а это выход: проведите её от выхода ко входу"),
+        ),
+    }
+}
+
+pub(crate) fn recursion(name: &str) -> Words {
+    Words::new(
+        format!(
+            "the subprogram '{}' calls itself by this call, so it would never end",
+            short(name)
+        ),
+        format!(
+            "подпрограмма '{}' через этот вызов вызывает сама себя и никогда не кончилась бы",
+            short(name)
+        ),
+    )
+}
+
+pub(crate) fn too_deep(most: usize) -> Words {
+    Words::new(
+        format!("calls nest deeper than {most}"),
+        format!("вызовы вложены глубже, чем {most}"),
+    )
+}
+
+pub(crate) fn too_many_instances(most: usize) -> Words {
+    Words::new(
+        format!(
+            "the program has more than {most} diagrams at work: each call of a subprogram is one"
+        ),
+        format!("в программе больше {most} работающих диаграмм: каждый вызов подпрограммы - одна"),
+    )
+}
+
+pub(crate) fn too_large(nodes: usize, edges: usize) -> Words {
+    Words::new(
+        format!(
+            "the program has more than {nodes} blocks or {edges} edges, those of called subprograms counted for each call"
+        ),
+        format!(
+            "в программе больше {nodes} блоков или {edges} линий, считая подпрограммы при каждом вызове"
+        ),
+    )
+}
+
+pub(crate) fn too_much_text(most: usize) -> Words {
+    let most = most >> 20;
+    Words::new(
+        format!(
+            "the properties of the program have more than {most} MiB of text, those of called subprograms counted for each call"
+        ),
+        format!(
+            "в свойствах программы больше {most} МиБ текста, считая подпрограммы при каждом вызове"
+        ),
+    )
+}
+
+pub(crate) fn queues_differ() -> Words {
+    Words::new(
+        "edges that end at one port must agree on its queue: give them the same Policy and Capacity",
+        "линии к одному порту должны одинаково описывать его очередь: задайте им одни и те же Policy и Capacity",
+    )
+}
+
+pub(crate) fn no_such_input(port: &str, name: &str) -> Words {
+    Words::new(
+        format!(
+            "tokens that come to {port} are lost: the subprogram '{}' has no input port {port}",
+            short(name)
+        ),
+        format!(
+            "значения на входе {port} пропадают: в подпрограмме '{}' нет входа {port}",
+            short(name)
+        ),
+    )
+}
+
+pub(crate) fn no_variable(text: &str) -> Words {
+    Words::new(
+        format!(
+            "'{}' is not a name of a variable: write `name`, `name = value`, or several divided by `;`",
+            short(text)
+        ),
+        format!(
+            "'{}' не имя переменной: напишите `имя`, `имя = значение` или несколько через `;`",
+            short(text)
+        ),
+    )
+}
+
+pub(crate) fn no_number(text: &str) -> Words {
+    Words::new(
+        format!(
+            "'{}' is not a number, and this property is not computed",
+            short(text)
+        ),
+        format!("'{}' не число, а это свойство не вычисляется", short(text)),
+    )
+}
+
+pub(crate) fn bad_period(time: i32) -> Words {
+    Words::new(
+        format!("{time} ms: the time must be above 0"),
+        format!("{time} мс: время должно быть больше 0"),
+    )
+}
+
+pub(crate) fn bad_width() -> Words {
+    Words::new("the width must be above 0", "ширина должна быть больше 0")
+}
+
+pub(crate) fn no_choice(text: &str, choices: &[&str]) -> Words {
+    let all = list(choices.iter().copied());
+    Words::new(
+        format!("'{}' is none of {all}", short(text)),
+        format!("'{}' нет среди {all}", short(text)),
+    )
+}
+
+pub(crate) fn no_sensor<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Words {
+    let near = near::did_you_mean(name, known);
+    Words::new(
+        format!("there is no sensor '{}'{}", short(name), near.english),
+        format!("датчика '{}' нет{}", short(name), near.russian),
+    )
+}
+
+pub(crate) fn no_device_port(name: &str) -> Words {
+    Words::new(
+        format!("the controller has no port '{}'", short(name)),
+        format!("у контроллера нет порта '{}'", short(name)),
+    )
+}
+
+pub(crate) fn write_input(name: &str) -> Words {
+    Words::new(
+        format!(
+            "'{}' only tells readings, so nothing can be written there",
+            short(name)
+        ),
+        format!(
+            "'{}' только сообщает показания, записать туда ничего нельзя",
+            short(name)
+        ),
+    )
+}
+
+pub(crate) fn loop_step() -> Words {
+    Words::new(
+        "the step is 0, so the loop would never end",
+        "шаг равен 0, поэтому цикл никогда не кончился бы",
+    )
+}

@@ -1,0 +1,86 @@
+//! A data-flow program under judgement.
+//!
+//! Owns the border between the judge and the machine of `lang_dataflow`. Knows no rules.
+
+use super::program::{Program, Running, Spot};
+use super::track::Group;
+use lang_dataflow::machine::Machine;
+use lang_dataflow::machine::trace::{Deaf, Trace};
+use lang_dataflow::program::{NodeId, Program as Lowered};
+use lang_diagram::brick::Brick;
+use lang_diagram::machine::Status;
+use lang_text::problem::{Locale, Problem};
+use std::rc::Rc;
+
+/// A data-flow program. It has no threads: what it did last is the block that reacted last.
+#[derive(Debug)]
+pub struct Dataflow {
+    machine: Machine,
+    last: Last,
+}
+
+/// The block that reacted last.
+#[derive(Debug, Default)]
+struct Last(Option<NodeId>);
+
+impl Trace for Last {
+    fn fired(&mut self, _now: u32, node: NodeId) {
+        self.0 = Some(node);
+    }
+}
+
+impl Dataflow {
+    /// Before its first instant.
+    pub fn new(program: Rc<Lowered>) -> Self {
+        Self {
+            machine: Machine::new(program),
+            last: Last::default(),
+        }
+    }
+}
+
+impl Program for Dataflow {
+    fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status {
+        self.machine.step(now_ms, robot, &mut self.last)
+    }
+
+    fn stop(&mut self, robot: &mut dyn Brick) {
+        self.machine.stop(robot, &mut Deaf);
+    }
+
+    fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+        if let Some(id) = self.last.0 {
+            let row = self.machine.program().node(id).row;
+            tell(Group::Block, "flow", row.shown_in(locale));
+        }
+        for (name, value) in self.machine.variables() {
+            tell(Group::Variable, name, &value.brief());
+        }
+    }
+
+    fn errors(&self) -> &[Problem] {
+        self.machine.errors()
+    }
+
+    fn running(&self) -> Vec<Running> {
+        let program = self.machine.program();
+        let at = self.last.0.map(|id| {
+            let node = program.node(id);
+            let instance = program.instances.get(node.instance as usize);
+            Running {
+                thread: "flow".to_owned(),
+                ended_ms: match self.machine.status() {
+                    Status::Running => None,
+                    Status::Ended { at, .. } => Some(at),
+                },
+                at: Spot::Block {
+                    diagram: instance.map_or_else(String::new, |one| one.name.to_string()),
+                    id: node.id.to_string(),
+                    kind: node.row.element.to_owned(),
+                    caption: [node.row.shown.to_owned(), node.row.russian.to_owned()],
+                },
+            }
+        });
+        at.into_iter().collect()
+    }
+}

@@ -1,0 +1,96 @@
+//! A data-flow program on its way from its file to crate `lang-dataflow`: of a save, or in its textual form.
+//!
+//! Owns which files are such programs, and when one must not run. What is wrong with it is found in `lang`.
+
+use super::save::{Unreadable, bytes};
+use lang_dataflow::check::check;
+use lang_dataflow::project::Project;
+use lang_dataflow::read::{Language, language, project};
+use lang_dataflow::{program, text};
+use lang_diagram::read::{self, Opened};
+use lang_text::problem::{Problem, Severity};
+use std::path::Path;
+use std::rc::Rc;
+
+/// The ending of a data-flow program in its textual form.
+pub(crate) const ENDING: &str = "flow";
+
+/// A data-flow program that was read.
+pub(crate) struct Flow {
+    /// What it means.
+    pub project: Project,
+    /// What is strange but does not keep it from being read.
+    pub problems: Vec<Problem>,
+}
+
+/// What a file has.
+pub(crate) enum Program {
+    /// A save whose diagrams of control flow are run.
+    Diagram(Box<Opened>),
+    /// A save whose diagrams of data flow are run.
+    Flow(Flow, Box<Opened>),
+    /// A data-flow program in its textual form.
+    Text(Flow),
+}
+
+/// Whether a file is a data-flow program in its textual form, by its name.
+pub(crate) fn is_text(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == ENDING)
+}
+
+/// Reads a save or a text.
+pub(crate) fn open(path: &Path) -> Result<Program, Unreadable> {
+    let bytes = bytes(path).map_err(Unreadable::File)?;
+    if is_text(path) {
+        return of_text(bytes).map(Program::Text);
+    }
+    let opened = read::read(&bytes).map_err(Unreadable::Save)?;
+    Ok(of_save(opened))
+}
+
+/// The data-flow program that bytes spell out.
+pub(crate) fn of_text(bytes: Vec<u8>) -> Result<Flow, Unreadable> {
+    let text = String::from_utf8(bytes).map_err(|error| {
+        Unreadable::File(super::words::no_utf_8(error.utf8_error().valid_up_to()))
+    })?;
+    let project = text::read(&text).map_err(Unreadable::Save)?;
+    Ok(Flow {
+        project,
+        problems: Vec::new(),
+    })
+}
+
+/// What of a save is run.
+pub(crate) fn of_save(opened: Opened) -> Program {
+    match language(&opened.save) {
+        Language::Diagram => Program::Diagram(Box::new(opened)),
+        Language::Dataflow => {
+            let (project, problems) = project(&opened.save);
+            Program::Flow(Flow { project, problems }, Box::new(opened))
+        }
+    }
+}
+
+impl Flow {
+    /// Everything that is wrong with it.
+    pub(crate) fn found(&self) -> Vec<Problem> {
+        let mut problems = self.problems.clone();
+        problems.extend(check(&self.project).problems);
+        problems
+    }
+
+    /// Ready to run.
+    ///
+    /// # Errors
+    /// What keeps it from running.
+    pub(crate) fn ready(&self) -> Result<Rc<program::Program>, Vec<Problem>> {
+        let checked = check(&self.project);
+        let is_error = |one: &&Problem| one.severity == Severity::Error;
+        let all = self.problems.iter().chain(&checked.problems);
+        let errors: Vec<Problem> = all.filter(is_error).cloned().collect();
+        if checked.has_errors() || !errors.is_empty() {
+            return Err(errors);
+        }
+        Ok(Rc::new(checked.program))
+    }
+}

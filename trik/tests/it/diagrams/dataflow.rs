@@ -1,0 +1,119 @@
+//! Programs of data flow on this computer: `trik lint`, `show` and `check`, and the programs that the document has.
+
+use super::{root, trik};
+use harness::Board;
+use lang_dataflow::{save, text};
+use std::fs;
+
+/// The programs in the fences of the document, with the names of their diagrams.
+fn documented() -> Vec<String> {
+    let page = fs::read_to_string(root().join("docs/user/dataflow.md")).expect("the document");
+    let fences = page.split("```text\n").skip(1);
+    let programs = fences.filter_map(|rest| rest.split("```").next());
+    programs
+        .map(str::to_owned)
+        .filter(|text| text.starts_with("diagram"))
+        .collect()
+}
+
+#[test]
+fn programs_of_the_document_have_nothing_wrong_and_do_what_it_says() {
+    let programs = documented();
+    assert_eq!(programs.len(), 4);
+    let board = Board::new();
+    for (at, program) in programs.iter().enumerate() {
+        let name = format!("p{at}.flow");
+        board.file(&name, program);
+        let found = trik(&board, &["lint", &name]);
+        assert_eq!(
+            (found.code(), &*found.stdout),
+            (0, "1 file: 0 errors, 0 warnings, 0 notes\n")
+        );
+    }
+    let first = trik(&board, &["check", "p0.flow"]);
+    assert_eq!(
+        (first.code(), &*first.stdout),
+        (0, "p0.flow: ended (no rules), 0.00 s\n")
+    );
+    let second = trik(&board, &["check", "p1.flow"]);
+    assert_eq!(
+        (second.code(), &*second.stdout),
+        (0, "p1.flow: ended (no rules), 1.50 s\n")
+    );
+    // An empty world has no sensors.
+    let third = trik(&board, &["check", "p2.flow"]);
+    assert_eq!(third.code(), 1);
+    let told = "Sensor 'wall': the robot has no such device";
+    assert!(third.stdout.contains(told), "{}", third.stdout);
+}
+
+#[test]
+fn saves_and_texts_are_shown_and_become_each_other() {
+    let board = Board::new();
+    let program = documented().pop().expect("a program");
+    board.file("wall.flow", &program);
+    let project = text::read(&program).expect("a program");
+    board.file("wall.qrs", save::save(&project).write().expect("a save"));
+    let sentences = trik(&board, &["show", "wall.flow"]);
+    assert_eq!(sentences.code(), 0, "{}", sentences.stderr);
+    assert!(
+        sentences.stdout.contains("C.TRUE -> E.I0"),
+        "{}",
+        sentences.stdout
+    );
+    assert_eq!(trik(&board, &["show", "wall.qrs"]).stdout, sentences.stdout);
+    let russian = trik(&board, &["show", "wall.flow", "--language", "ru"]);
+    let is_russian = |letter: char| ('\u{410}'..='\u{44f}').contains(&letter);
+    assert!(russian.stdout.contains(is_russian), "{}", russian.stdout);
+    let source = trik(&board, &["show", "wall.qrs", "--source"]);
+    board.file("again.flow", &source.stdout);
+    let again = trik(&board, &["show", "again.flow", "--source"]);
+    assert_eq!(again.stdout, source.stdout);
+    let picture = trik(&board, &["show", "wall.qrs", "--svg", "wall.svg"]);
+    assert_eq!(picture.code(), 0, "{}", picture.stderr);
+    let svg = fs::read_to_string(board.path("wall.svg")).expect("a picture");
+    assert!(svg.starts_with("<svg") && svg.contains("REPLACE_DATA"));
+    let found = trik(&board, &["lint", "wall.qrs"]);
+    assert_eq!(found.code(), 0, "{}", found.stdout);
+    let debugged = trik(&board, &["check", "--debug", "wall.qrs"]);
+    assert!(
+        debugged.code() != 0 && debugged.stderr.contains("no debugger yet"),
+        "{}",
+        debugged.stderr
+    );
+    board.file("control.qrs", super::square());
+    let control = trik(&board, &["show", "control.qrs", "--source"]);
+    assert_eq!(control.code(), 1);
+    assert!(
+        control
+            .stderr
+            .contains("--source is for data-flow programs"),
+        "{}",
+        control.stderr
+    );
+}
+
+#[test]
+fn rubbish_is_refused_with_its_place() {
+    let board = Board::new();
+    board.file("bytes.flow", [0xff, 0xfe, 0x00]);
+    board.file("empty.flow", "");
+    board.file("words.flow", "diagram \"A\"\n  x Sensor\n");
+    board.file(
+        "near.flow",
+        "diagram \"A\"\n  x: Sensr\n  y: Sensor(VarNam = sensorA1)\n",
+    );
+    for (name, words) in [
+        ("bytes.flow", "UTF-8"),
+        ("empty.flow", "no data-flow diagram"),
+        ("words.flow", "2:"),
+        ("near.flow", "did you mean 'Sensor'"),
+    ] {
+        for command in ["lint", "check"] {
+            let output = trik(&board, &[command, name]);
+            assert!(output.code() != 0, "{command} {name}");
+            let all = format!("{}{}", output.stdout, output.stderr);
+            assert!(all.contains(words), "{command} {name}: {all}");
+        }
+    }
+}
