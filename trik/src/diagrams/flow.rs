@@ -51,7 +51,7 @@ pub(crate) fn open(path: &Path) -> Result<Program, Unreadable> {
 /// The data-flow program that bytes spell out.
 pub(crate) fn of_text(bytes: Vec<u8>) -> Result<Flow, Unreadable> {
     let text = String::from_utf8(bytes).map_err(|error| {
-        Unreadable::File(super::words::no_utf_8(error.utf8_error().valid_up_to()))
+        Unreadable::File(super::words::no_text(error.utf8_error().valid_up_to()))
     })?;
     let project = text::read(&text).map_err(Unreadable::Save)?;
     Ok(Flow {

@@ -79,6 +79,14 @@ pub(super) fn utf_16() -> Words {
     )
 }
 
+/// A program in its textual form that is no text.
+pub(super) fn no_text(at: usize) -> Words {
+    Words::new(
+        format!("byte {at} is not UTF-8, so this is not a program as text"),
+        format!("байт {at} не в UTF-8, так что это не программа в виде текста"),
+    )
+}
+
 /// A byte of a world that is not UTF-8.
 pub(super) fn no_utf_8(at: usize) -> Words {
     Words::new(

@@ -210,6 +210,13 @@ fn node(program: &Program, id: NodeId, found: &mut Found) {
         Op::Flow(Flow::Stop) if node.linked == 0 => {
             found.warn(program.place(id), words::stop_unlinked());
         }
+        // Only parameters are connected: nothing starts it.
+        Op::Flow(Flow::Loop { .. }) if node.linked != 0 && !node.is_linked(3) => {
+            found.warn(program.place(id), words::dead());
+        }
+        Op::Flow(Flow::Wait(_)) if node.linked != 0 && !node.is_linked(0) && !node.is_linked(2) => {
+            found.warn(program.place(id), words::dead());
+        }
         Op::Flow(Flow::Function { .. }) if node.data != 0 && node.is_linked(0) => {
             found.warn(port_place(program, id, 0), words::start_ignored());
         }
@@ -307,8 +314,15 @@ fn is_separated(
     if follows(one, other) || follows(other, one) {
         return true;
     }
+    // Starts that come of one block follow each other, or are meant to come together.
+    let are_starts = [one.1, other.1]
+        .iter()
+        .all(|to| program.node(to.node).row.control() == Some(to.port));
     let of_one = graph.sources([one.0]);
     graph.sources([other.0]).iter().any(|id| {
+        if are_starts && of_one.contains(id) {
+            return true;
+        }
         let decides = matches!(
             program.node(*id).op,
             Op::Flow(Flow::If(_) | Flow::Switch { .. } | Flow::Unzip)

@@ -283,6 +283,27 @@ fn lists_and_what_functions_give_are_known_along_the_way() {
 }
 
 #[test]
+fn a_square_in_a_loop_has_nothing_to_tell_and_a_condition_compares() {
+    let square = "L Loop {end_border=3 | time=1000}\nGO Motors\nW Wait and send\nTURN Motors {M3Power=0 | M4Power=40}\nE Wait and send {time=900}\nNO Motors {M3Power=0 | M4Power=0}\nL.OUT > GO.CF_IN\nGO.CF_OUT > W.CF_IN\nW.CF_OUT > TURN.CF_IN\nL.CF_OUT > E.CF_IN\nE.CF_OUT > NO.CF_IN";
+    assert_eq!(told(square), Vec::<String>::new());
+    only(
+        "A Sensor\nI If {condition=data = 5}\nS Say\nA.OUT > I.DATA\nI.TRUE > S.DATA",
+        "error: main: If 'I': 'Condition': the condition assigns a value",
+    );
+    for text in [
+        "T Value generator {varValue=1}\nL Loop\nS Say\nT.OUT > L.TO\nL.OUT > S.DATA",
+        "T Value generator {varValue=1}\nL Wait and send\nS Say\nT.OUT > L.TIME\nL.CF_OUT > S.CF_IN",
+    ] {
+        let told = told(text);
+        assert!(
+            told.iter()
+                .any(|one| one.contains("'L': nothing starts it")),
+            "{told:?}"
+        );
+    }
+}
+
+#[test]
 fn an_error_is_never_lost_among_warnings() {
     let mut main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
     let twin = main.edges[0].clone();

@@ -11,7 +11,7 @@ use lang_diagram::ports::Sort;
 use lang_expr::names::{is_own, own_name};
 use lang_expr::reserved::{SENSORS, Shape};
 use lang_expr::tree::Node as Part;
-use lang_expr::{Compat, Names, Source, Type, Value};
+use lang_expr::{Compat, Names, Source, Type, Value, Wanted};
 use std::collections::HashSet;
 use std::rc::Rc;
 
@@ -228,6 +228,13 @@ struct Inference<'a> {
     assigned: HashSet<Rc<str>>,
 }
 
+/// Whether an expression ends with an assignment, and so has no value.
+fn assigns_last(source: &Source) -> bool {
+    let tree = source.tree();
+    let last = tree.statements().last().copied();
+    last.is_some_and(|last| matches!(tree.node(last), Part::Assign { .. }))
+}
+
 /// Variables of the project that its texts and its blocks give values.
 fn assigned(program: &Program) -> HashSet<Rc<str>> {
     let mut all = HashSet::new();
@@ -277,6 +284,11 @@ impl Inference<'_> {
             let Some(found) = found.as_deref_mut() else {
                 continue;
             };
+            if text.wanted == Wanted::Bool && assigns_last(&source) {
+                let place = self.program.property_place(text.node, text.property, None);
+                found.error(place, words::assigning_condition());
+                continue;
+            }
             if self.tell_unassigned(&source, text, found) {
                 continue;
             }

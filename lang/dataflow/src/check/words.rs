@@ -68,6 +68,13 @@ pub(crate) fn never_assigned(name: &str) -> Words {
     )
 }
 
+pub(crate) fn assigning_condition() -> Words {
+    Words::new(
+        "the condition assigns a value and compares nothing: write `==` to compare",
+        "условие присваивает значение и ничего не сравнивает: для сравнения напишите `==`",
+    )
+}
+
 pub(crate) fn cycle(blocks: &[String], count: usize) -> Words {
     let more = if count > blocks.len() { ", ..." } else { "" };
     let names = blocks.join(", ");

@@ -47,9 +47,9 @@ fn a_data_flow_program_drives_to_its_distance_and_rests_when_it_is_stopped() {
         assert_eq!(stopped.code(), 0, "{}", stopped.stderr);
         assert!(reachable.rests());
         drop(running);
-        // Away from the wall again, for the second form.
-        reachable.robot.drive(-40, -40);
+        // Away from the wall again, for the second form; a rest that comes late would take one order away.
         eventually("some way back", || {
+            reachable.robot.drive(-40, -40);
             reachable.robot.number("sensors/D1/value") > 45.0
         });
         reachable.robot.write("stop", "1").expect("a rest");
