@@ -195,7 +195,11 @@ const CASES: &[(&[&str], i32, &str)] = &[
         1,
         "--time-limit allows more",
     ),
-    (&["check", "fields"], 2, "fields: there is no *.qrs here"),
+    (
+        &["check", "fields"],
+        2,
+        "fields: there is no *.qrs and *.flow here",
+    ),
     (&["check"], 2, ""),
     (&["check", "line.qrs", "--language", "ru"], 0, "line.qrs: "),
 ];
