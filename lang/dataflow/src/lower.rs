@@ -26,7 +26,7 @@ pub struct Lowered {
     /// What is wrong with blocks, ports and properties: as much as is kept of it.
     pub problems: Vec<Problem>,
     /// Whether one of the problems, kept or not, is an error.
-    pub has_failed: bool,
+    pub(crate) has_failed: bool,
 }
 
 impl Lowered {
@@ -354,12 +354,9 @@ impl<'a> Lowering<'a> {
     fn starts(&mut self, instance: u32, first: NodeId) {
         let instance = &mut self.program.instances[instance as usize];
         for (at, node) in (first..).zip(&self.program.nodes[first as usize..]) {
-            match (&node.op, node.row.control()) {
-                (Op::Flow(Flow::InPort | Flow::OutPort(_)), _) => {}
-                (_, Some(port)) if node.linked == 0 => {
-                    instance.starts.push(Target { node: at, port });
-                }
-                _ => {}
+            // Ports of a subprogram have no control input, so nothing starts them.
+            if let (Some(port), 0) = (node.row.control(), node.linked) {
+                instance.starts.push(Target { node: at, port });
             }
         }
     }

@@ -176,6 +176,6 @@ pub(super) fn below(path: &Path, endings: &[&str], deep: usize, max: usize) -> R
 /// There is none of the files that are wanted.
 pub(super) fn none(path: &Path, endings: &[&str]) -> Error {
     let endings: Vec<String> = endings.iter().map(|one| format!("*.{one}")).collect();
-    let endings = endings.join(" and ");
+    let endings = endings.join(" or ");
     Error::Refused(format!("{}: there is no {endings} here", named(path)))
 }

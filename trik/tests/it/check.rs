@@ -198,7 +198,7 @@ const CASES: &[(&[&str], i32, &str)] = &[
     (
         &["check", "fields"],
         2,
-        "fields: there is no *.qrs and *.flow here",
+        "fields: there is no *.qrs or *.flow here",
     ),
     (&["check"], 2, ""),
     (&["check", "line.qrs", "--language", "ru"], 0, "line.qrs: "),

@@ -38,7 +38,7 @@ impl Rate {
             {
                 Self::AtMost(one)
             }
-            _ => Self::Sporadic,
+            (Self::Once | Self::Every(_) | Self::AtMost(_) | Self::Sporadic, _) => Self::Sporadic,
         }
     }
 

@@ -202,14 +202,12 @@ impl Formulas {
         let Some(slot) = self.names.declare(name, &value) else {
             return Err(words::too_many_variables());
         };
-        match (self.names.type_of(slot), &value) {
-            (Type::Int, Value::Float(_)) => _ = self.names.retype(slot, &value),
-            (Type::Float, Value::Int(_)) => {}
-            (of, value) if !is_of(of, value) => {
-                let wanted = self.names.type_name(of);
-                return Err(words::wrong_type(name, value, &wanted));
-            }
-            _ => {}
+        let of = self.names.type_of(slot);
+        if let (Type::Int, Value::Float(_)) = (of, &value) {
+            self.names.retype(slot, &value);
+        } else if !is_of(of, &value) {
+            let wanted = self.names.type_name(of);
+            return Err(words::wrong_type(name, &value, &wanted));
         }
         let set = self.store.set(slot, value);
         set.map_err(|_| words::too_many_variables())
@@ -234,7 +232,8 @@ fn is_of(of: Type, value: &Value) -> bool {
         Type::Any | Type::Open => true,
         Type::Bool => matches!(value, Value::Bool(_)),
         Type::Int => matches!(value, Value::Int(_)),
-        Type::Float => matches!(value, Value::Float(_)),
+        // A whole number stands where a number may stand.
+        Type::Float => matches!(value, Value::Float(_) | Value::Int(_)),
         Type::Text => matches!(value, Value::Text(_) | Value::Unset),
         Type::Nil => matches!(value, Value::Nil),
         Type::Function => false,

@@ -226,16 +226,13 @@ impl Machine {
             let place = place
                 .as_ref()
                 .and_then(|place| super::values::items(place).ok());
-            match (is_pressed, *was_pressed, place) {
-                (true, _, Some([x, y, ..])) => {
-                    let token = list(vec![number, x.clone(), y.clone()]);
-                    self.send(id, PAD_OUT, token, env)?;
-                }
-                (false, true, _) => {
-                    let token = list(vec![number, Value::Int(0), Value::Int(0)]);
-                    self.send(id, PAD_OUT, token, env)?;
-                }
-                _ => {}
+            let at = match (is_pressed, place) {
+                (true, Some([x, y, ..])) => Some([x.clone(), y.clone()]),
+                (false, _) if *was_pressed => Some([Value::Int(0), Value::Int(0)]),
+                (true | false, _) => None,
+            };
+            if let Some([x, y]) = at {
+                self.send(id, PAD_OUT, list(vec![number, x, y]), env)?;
             }
             *was_pressed = is_pressed;
         }

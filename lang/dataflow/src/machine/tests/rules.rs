@@ -463,3 +463,34 @@ fn a_silent_encoder_is_a_gap_and_a_missing_one_an_error() {
     }
     assert_eq!(machine.warnings().len(), 1);
 }
+
+#[test]
+fn a_pad_is_told_while_it_is_touched_and_once_when_it_is_let_go() {
+    let main = diagram(
+        "main",
+        DiagramKind::Main,
+        "G Gamepad\nS If {condition=true}\nB If {condition=true}\nG.PAD > S.DATA\nG.BUTTON > B.DATA",
+    );
+    let port = |variable| Port::shown_by(variable).expect(variable).name();
+    let (pressed, place) = (port("gamepadPad2Pressed"), port("gamepadPad2"));
+    let button = port("gamepadButton3");
+    let (lines, _) = run(
+        &project(vec![main]),
+        100,
+        &mut Script::default(),
+        |now, robot| {
+            let is_touched = (40..70).contains(&now);
+            robot.readings.insert(pressed, vec![i32::from(is_touched)]);
+            robot.readings.insert(place, vec![10, -20]);
+            robot.readings.insert(button, vec![i32::from(now == 60)]);
+        },
+    );
+    assert_eq!(
+        lines,
+        [
+            "40: G.PAD [2, 10, -20]",
+            "60: G.PAD [2, 10, -20]; G.BUTTON [3, 1]",
+            "80: G.PAD [2, 0, 0]",
+        ]
+    );
+}
