@@ -35,9 +35,9 @@ main() {
 # Interpreted instructions take some ten times as long, so the random trials are fewer.
 unit() {
     say "unit tests"
-    # The template in Rust would be built for the PC. The emulator has an errno of its own for an ioctl that it does not
-    # know, and tells of a program that is missing only by its exit code.
-    PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p converter -p filters -p trikfs -p trikd -- \
+    # Optimised, because it runs longer than it is built. The template in Rust would be built for the PC. The emulator has
+    # an errno of its own for an ioctl that it does not know, and tells of a program that is missing only by its exit code.
+    CARGO_PROFILE_DEV_OPT_LEVEL=1 PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p converter -p filters -p trikfs -p trikd -- \
         --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
         --skip a_program_that_is_missing_is_named "$@"
 }

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Builds trikfs for this PC and packs it as a Debian package.
 #
-# usage: cross/install/deb.sh [--no-build]
+# usage: cross/install/deb.sh [--no-build | --built FOLDER]
 #
-#   --no-build   pack what cargo has built before
+#   --no-build       pack what cargo has built for packages before
+#   --built FOLDER   pack the programs in FOLDER, of whatever profile: to test packages, not to give them away
 #
 # The result is target/cross/packages/trikfs_VERSION_ARCHITECTURE.deb, for the Debian release of this PC and later ones.
 # cross/install/README.md says how to install it. CARGO_TARGET_DIR, DEBFULLNAME and DEBEMAIL are respected.
@@ -12,10 +13,18 @@ set -euo pipefail
 . "$(dirname "$0")/../lib.sh"
 help_if_asked "$@"
 build=yes
-if [ "${1:-}" = --no-build ]; then
+built=
+case ${1:-} in
+--no-build)
     build=
     shift
-fi
+    ;;
+--built)
+    build=
+    built=$(cd "${2:?--built wants a folder; see --help}" && pwd)
+    shift 2
+    ;;
+esac
 no_arguments "$@"
 # shellcheck source=cross/install/package.sh
 . "$root/cross/install/package.sh"
@@ -23,7 +32,7 @@ no_arguments "$@"
 . "$root/cross/install/stage.sh"
 
 from=$root/cross/install/deb
-built=${CARGO_TARGET_DIR:-$root/target}/dist
+built=${built:-${CARGO_TARGET_DIR:-$root/target}/dist}
 work=
 
 main() {

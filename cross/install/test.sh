@@ -10,7 +10,8 @@
 #   deb        the package for this PC: lintian, installation and removal, on a throw-away layer over this system
 #
 # All of them if none is named. It wants root, /dev/fuse and target/cross/robot, which cross/build.sh makes; the programs
-# in it run in qemu. CARGO_TARGET_DIR says where deb builds.
+# in it run in qemu. CARGO_TARGET_DIR says where deb builds;
+# with TRIK_BUILT, a folder with programs of this PC, it packs those instead.
 set -euo pipefail
 # shellcheck source=cross/lib.sh
 . "$(dirname "$0")/../lib.sh"

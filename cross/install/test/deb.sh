@@ -5,13 +5,19 @@ test_deb() {
     need_packages lintian man-db systemd util-linux gcc libc6-dev
     export TRIK_CROSS_DIR=$work/deb-packages
     mkdir "$TRIK_CROSS_DIR"
-    check "deb.sh" "$install/deb.sh"
-    local deb sum
+    local deb sum again=(--no-build)
+    if [ -n "${TRIK_BUILT:-}" ]; then
+        again=(--built "$TRIK_BUILT")
+        check "deb.sh --built" "$install/deb.sh" "${again[@]}"
+    else
+        check "deb.sh" "$install/deb.sh"
+    fi
     deb=$TRIK_CROSS_DIR/packages/trikfs_${version}_$(dpkg --print-architecture).deb
     sum=$(sha256sum <"$deb")
-    check "deb.sh --no-build" "$install/deb.sh" --no-build
+    check "deb.sh ${again[0]}" "$install/deb.sh" "${again[@]}"
     check "gives the same bytes" test "$(sha256sum <"$deb")" = "$sum"
     check "deb.sh: unknown argument" gives 2 "$install/deb.sh" --frob
+    check "deb.sh: a folder without programs" says "is missing" "$install/deb.sh" --built "$work"
     check "deb.sh: help" says "usage: cross/install/deb.sh" "$install/deb.sh" --help
     # It warns of root on standard error. Texts in a Rust program stand side by side without an end, so that the last word of
     # one and the first of the next look like a mistyped word; which ones meet is up to the linker.
