@@ -2,6 +2,7 @@
 //!
 //! Saves are made here.
 
+mod behaviours;
 mod dataflow;
 mod together;
 

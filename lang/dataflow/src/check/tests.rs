@@ -330,3 +330,35 @@ fn an_error_is_never_lost_among_warnings() {
             .contains("more than 4 MiB of text")
     );
 }
+
+/// What a function computes is known only after the blocks before it; its texts and those of others that read its
+/// variables wait for that.
+#[test]
+fn variables_are_read_after_what_gives_them_their_type_is_understood() {
+    let inner = diagram(
+        "inner",
+        DiagramKind::Subprogram,
+        "IN Input port\nF Text programming {IO0=e = I0; i = i + e | IO1=u = 2*e + i; u}\nOUT Output port\nIN.OUT > F.I0\nF.O1 > OUT.DATA",
+    );
+    let main = diagram(
+        "main",
+        DiagramKind::Main,
+        "V Variable {variable=i = 0}\nA Sensor\nB Sensor {VarName=sensorA2}\nF Text programming {IO0=I0 - I1}\nC User block of inner\nM Motors\nA.OUT > F.I0\nB.OUT > F.I1\nF.O0 > C.I0\nC.O0 > M.M3",
+    );
+    assert_eq!(told_of(&project(vec![main, inner])), Vec::<String>::new());
+    // Of the items of a list nobody knows what they are.
+    for text in [
+        "L Sensor\nV Text programming {IO0={I0, 1}}\nS Text programming {IO0=x = I0[0]; y = I0[1] | IO1=x + y}\nM Motors\nL.OUT > V.I0\nV.O0 > S.I0\nS.O1 > M.M3",
+        "A Variable {variable=k}\nL Sensor\nF Text programming {IO0=k*I0}\nM Motors\nL.OUT > A.IN\nL.OUT > F.I0\nF.O0 > M.M3",
+    ] {
+        assert_eq!(told(text), Vec::<String>::new(), "{text}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_known_types_is_still_told() {
+    only(
+        "A Sensor\nF Text programming {IO0=e = I0 | IO1=e + 'a'}\nS Say\nA.OUT > F.I0\nF.O1 > S.DATA",
+        "error: main: Text programming 'F': 'IO1', 1:1 Type mismatch",
+    );
+}
