@@ -86,13 +86,8 @@ impl Engine for Diagram {
         let mut watch = Watch::new(self.locale);
         let machine = match self.load(&path, host)? {
             Loaded::Diagram(machine) => *machine,
-            Loaded::Flow(_) if is_debugged => {
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
-                let why = NoDiagram::Problems(vec![flow::NOT_YET.to_owned()]);
-                return Err(Failure::Diagram(name.into_owned(), why));
-            }
             Loaded::Flow(program) => {
-                return flow::run(program, &mut robot, &mut watch, host);
+                return flow::run(program, is_debugged, &mut robot, &mut watch, host);
             }
         };
         let mut diagram = Debugging::new(machine, self.locale);

@@ -10,6 +10,7 @@
 
 pub mod blocks;
 pub mod check;
+pub mod debug;
 pub mod fuzz;
 pub mod limits;
 pub mod lower;

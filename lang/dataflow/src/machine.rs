@@ -6,12 +6,15 @@
 //! gives both. The same program with the same readings does the same.
 
 mod act;
+mod aside;
 mod draw;
 mod evaluate;
 mod fire;
 mod formulas;
+pub mod patch;
 mod sensors;
 mod state;
+pub mod stops;
 pub mod trace;
 pub mod values;
 mod words;
@@ -34,6 +37,7 @@ use sensors::Readings;
 use state::State;
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
+use stops::Stops;
 use trace::Trace;
 
 /// How often sensors are read, in milliseconds of model time.
@@ -67,7 +71,12 @@ pub struct Machine {
     /// What motors were told last.
     told: BTreeMap<Port, i32>,
     began: Option<u32>,
+    /// The moment of the last step, of the caller's clock.
+    asked: u32,
     now: u32,
+    /// Whether it is stopped within an instant, or goes on in one.
+    is_amid: bool,
+    stops: Stops,
     firings: u32,
     /// The last blocks before the limit.
     suspects: Vec<NodeId>,
@@ -94,6 +103,8 @@ enum Halt {
     Stop,
     /// An error.
     Error(Box<Problem>),
+    /// Nothing ends, and somebody wants to look: the instant goes on later.
+    Stopped,
 }
 
 /// What a reaction works with.
@@ -121,7 +132,10 @@ impl Machine {
             writes: BTreeMap::new(),
             told: BTreeMap::new(),
             began: None,
+            asked: 0,
             now: 0,
+            is_amid: false,
+            stops: Stops::default(),
             firings: 0,
             suspects: Vec::new(),
             dropped: BTreeMap::new(),
@@ -132,16 +146,23 @@ impl Machine {
     }
 
     /// Runs the instant of a moment, in milliseconds that never go back. The first one is the beginning; then one is due
-    /// every [`STEP_MS`]. A later one makes up for timers, but not for readings that were left out.
+    /// every [`STEP_MS`]. A later one makes up for timers, but not for readings that were left out. While the program is
+    /// stopped, its time stands still.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Status {
-        if self.ended.is_none() {
+        let passed = now.saturating_sub(std::mem::replace(&mut self.asked, now));
+        if self.stopped().is_some() {
+            self.began = self.began.map(|began| began.saturating_add(passed));
+        } else if self.ended.is_none() {
             let program = self.program.clone();
             let env = &mut Env {
                 program: &program,
                 brick,
                 trace,
             };
-            let outcome = self.instant(now, env);
+            let outcome = match std::mem::take(&mut self.is_amid) {
+                true => self.tokens(env),
+                false => self.instant(now, env),
+            };
             self.conclude(outcome, env);
         }
         self.status()
@@ -173,7 +194,16 @@ impl Machine {
             self.poll(env)?;
         }
         self.receive(env)?;
+        self.tokens(env)
+    }
+
+    /// Delivers tokens until none is on its way.
+    fn tokens(&mut self, env: &mut Env<'_>) -> Result<(), Halt> {
         while let Some((target, value)) = self.deliveries.pop_front() {
+            if self.stops.is_armed() && self.stops_before(target, &value) {
+                self.deliveries.push_front((target, value));
+                return Err(Halt::Stopped);
+            }
             self.deliver(target, value, env)?;
         }
         Ok(())
@@ -198,6 +228,7 @@ impl Machine {
                 self.errors.push(*problem);
                 self.end(env);
             }
+            Err(Halt::Stopped) => self.is_amid = true,
         }
     }
 
@@ -227,6 +258,7 @@ impl Machine {
 
     fn end(&mut self, env: &mut Env<'_>) {
         self.ended = Some(self.now);
+        self.stops.forget();
         self.deliveries.clear();
         self.queues = self.program.nodes.iter().map(empty_queues).collect();
         self.queued = 0;
@@ -282,6 +314,11 @@ impl Machine {
     /// The program's variables that have values.
     pub fn variables(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.formulas.variables()
+    }
+
+    /// The value of a variable, if it has one.
+    pub fn value_of(&self, name: &str) -> Option<Value> {
+        self.formulas.get(name)
     }
 
     /// How many tokens wait at a port.

@@ -32,7 +32,7 @@ fn kind(block: &Block, locale: Locale) -> String {
 
 /// What each block of a diagram is called: by its caption, or by its kind if it has none, with a number if others are
 /// called the same.
-fn callings(diagram: &Diagram, locale: Locale) -> Vec<String> {
+pub fn callings(diagram: &Diagram, locale: Locale) -> Vec<String> {
     let name = |block: &Block| match block.name.trim() {
         "" => kind(block, locale),
         caption => shortened(caption, 60),

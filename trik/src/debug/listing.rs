@@ -3,19 +3,40 @@
 //! Owns the lines: those of `trik show` where it is clear what the diagram does, else a line for each block. Every block has
 //! a line, so that a program that is stopped can always be shown.
 
+use crate::diagrams::flow;
+use crate::diagrams::save::must;
+use crate::refusal::Refusal;
 use crate::terminal::harmless;
+use lang_dataflow::project::Project as Flow;
+use lang_dataflow::show::callings;
 use lang_diagram::blocks;
 use lang_diagram::project::Project;
 use lang_diagram::show::outline::{self, Line};
 use lang_text::problem::Locale;
 use std::collections::HashMap;
+use std::path::Path;
+
+/// The text of the diagram or the data-flow program in a file.
+///
+/// # Errors
+/// It cannot be read.
+pub(crate) fn listing_of(file: &Path, locale: Locale) -> Result<Listing, Refusal> {
+    Ok(match must(flow::open(file), file, locale)? {
+        flow::Program::Diagram(opened) => Listing::of(&opened.project, locale),
+        flow::Program::Flow(flow, _) | flow::Program::Text(flow) => {
+            Listing::of_flow(&flow.project, locale)
+        }
+    })
+}
 
 /// A diagram as lines.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Listing {
     lines: Vec<Line>,
     /// By block: its first line.
     places: HashMap<Box<str>, usize>,
+    /// Blocks of a data-flow program by what people call them.
+    callings: HashMap<String, Box<str>>,
 }
 
 impl Listing {
@@ -24,9 +45,38 @@ impl Listing {
         let mut listing = Self {
             lines: lines.unwrap_or_default(),
             places: HashMap::new(),
+            callings: HashMap::new(),
         };
         listing.find_places();
         listing.add_others(project, locale);
+        listing.find_places();
+        listing
+    }
+
+    /// A data-flow program: a line for each block, which people may mean by its caption too.
+    pub(crate) fn of_flow(project: &Flow, locale: Locale) -> Self {
+        let mut listing = Self::default();
+        for diagram in &project.diagrams {
+            listing.lines.push(Line {
+                text: format!("{}:", diagram.name),
+                blocks: Vec::new(),
+            });
+            let names = callings(diagram, locale);
+            for (block, name) in diagram.blocks.iter().zip(names) {
+                let kind = block.row.map(|row| row.shown_in(locale));
+                let kind = kind.unwrap_or(&block.element);
+                let text = match name.as_str() == kind {
+                    true => format!("  {name}"),
+                    false => format!("  {name} - {kind}"),
+                };
+                let id: Box<str> = block.id.as_str().into();
+                listing.callings.entry(name).or_insert_with(|| id.clone());
+                listing.lines.push(Line {
+                    text,
+                    blocks: vec![id],
+                });
+            }
+        }
         listing.find_places();
         listing
     }
@@ -83,8 +133,11 @@ impl Listing {
         self.places.contains_key(block)
     }
 
-    /// The id of a block that is meant by it, or by its last part in braces.
+    /// The id of a block that is meant by it, by its last part in braces, or by its caption in a data-flow program.
     pub(crate) fn id_of(&self, text: &str) -> Option<&str> {
+        if let Some(id) = self.callings.get(text) {
+            return Some(id);
+        }
         if let Some((id, _)) = self.places.get_key_value(text) {
             return Some(id);
         }

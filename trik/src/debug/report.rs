@@ -18,6 +18,9 @@ pub(crate) struct Report {
     pub stop: Option<Stop>,
     pub threads: Vec<Thread>,
     pub variables: Vec<Variable>,
+    /// Of a data-flow program: the last token of each port, and ports at which tokens wait.
+    pub ports: Vec<Port>,
+    pub waiting: Vec<Port>,
     /// From when on the past is kept, and how many bytes it takes.
     pub kept: Option<(u64, u64)>,
 }
@@ -65,6 +68,29 @@ pub(crate) struct At {
     pub diagram: String,
     pub id: String,
     pub block: String,
+    /// Of a data-flow program that is stopped: the port that a token is about to reach, and the token.
+    pub token: Option<Port>,
+}
+
+/// A port of a data-flow program.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Port {
+    /// Its block, by the caption or else by the type.
+    pub block: String,
+    pub name: String,
+    /// The token.
+    pub value: String,
+    /// How many tokens there were, or wait.
+    pub count: u64,
+    /// How many it has lost.
+    pub lost: u64,
+}
+
+impl Port {
+    /// As an edge names it.
+    pub(crate) fn full_name(&self) -> String {
+        format!("{}.{}", self.block, self.name)
+    }
 }
 
 /// A thread.
@@ -172,6 +198,8 @@ impl Report {
                 kind: text(variable, "type"),
                 value: text(variable, "value"),
             }),
+            ports: list(value, "ports", port),
+            waiting: list(value, "waiting", port),
             kept: kept.and_then(|kept| Some((number(kept, "from_ms")?, number(kept, "bytes")?))),
         })
     }
@@ -206,6 +234,21 @@ fn at(value: &Value) -> At {
         diagram: text(value, "diagram"),
         id: text(value, "id"),
         block: text(value, "block"),
+        token: value.get("port").map(|_| port(value)),
+    }
+}
+
+fn port(value: &Value) -> Port {
+    let caption = text(value, "caption");
+    Port {
+        block: match caption.is_empty() {
+            true => text(value, "block"),
+            false => caption,
+        },
+        name: text(value, "port"),
+        value: text(value, "value"),
+        count: number(value, "count").unwrap_or_default(),
+        lost: number(value, "lost").unwrap_or_default(),
     }
 }
 

@@ -31,6 +31,11 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
     let why = why((told, stop), listing, locale);
     let mut lines = vec![format!("{past}{}{thread}: {why}", time(told))];
     lines.extend(told.at().map(|at| place(at, listing, locale)));
+    let token = told.at().and_then(|at| at.token.as_ref());
+    lines.extend(token.map(|token| {
+        let (port, value) = (harmless(&token.full_name()), harmless(&token.value));
+        said(locale, words::token(&port, &value))
+    }));
     lines
 }
 
@@ -68,6 +73,10 @@ fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
             format!("> {line:3} {}", listing.text(line))
         }
         Some(_) => said(locale, words::another_runs(&diagram, &block)),
+        // Of a data-flow program people know the caption.
+        None if let Some(token) = &at.token => {
+            format!(">     {diagram}, {}", harmless(&token.block))
+        }
         None => format!(">     {diagram}, {block} {}", harmless(&at.id)),
     }
 }

@@ -6,6 +6,7 @@ use super::link::{Message, ms};
 use super::output::{harmless, say};
 use super::target::{Target, target, the_one};
 use super::upload::Upload;
+use crate::diagrams::flow;
 use crate::error::Error;
 use crate::limits;
 use clap::Args;
@@ -116,9 +117,11 @@ impl Watched {
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
     pub(super) fn new(path: &Path, gone: WhenGone) -> Result<Self, Error> {
-        let is_diagram = path.extension().is_some_and(|ending| ending == "qrs");
+        let is_diagram = path
+            .extension()
+            .is_some_and(|ending| ending == "qrs" || ending == flow::ENDING);
         if !is_diagram {
-            let why = "--watch is for diagrams (NAME.qrs): other programs cannot be changed while they run";
+            let why = "--watch is for diagrams (NAME.qrs, NAME.flow): other programs cannot be changed while they run";
             return Err(Error::file(path, why.to_owned()));
         }
         Ok(Self {

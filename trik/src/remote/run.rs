@@ -23,7 +23,7 @@ use trikd::protocol::program::WhenGone;
 /// What `trik run` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RunArgs {
-    /// The program: NAME.js, NAME.py, NAME.qrs (a diagram of TRIK Studio), NAME.lua, or a file that begins with #! or is
+    /// The program: NAME.js, NAME.py, NAME.qrs (a diagram of TRIK Studio), NAME.flow (a data-flow program), NAME.lua, or a file that begins with #! or is
     /// compiled for the robot.
     pub file: PathBuf,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a

@@ -6,11 +6,10 @@
 use super::debugged::Debugged;
 use super::output::say;
 use super::target::{Target, target, the_one};
-use crate::debug::listing::Listing;
+use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::{Report, State};
 use crate::debug::stops;
 use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
-use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
 use crate::output::standard;
@@ -29,8 +28,9 @@ const TURN: Duration = Duration::from_millis(50);
 /// Which program is meant, and how long it is waited for.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct WhereArgs {
-    /// The diagram that runs, a file NAME.qrs: with it lines are those of `trik show`.
-    #[arg(long, value_name = "FILE.qrs")]
+    /// The diagram that runs, a file NAME.qrs or NAME.flow: with it lines are those of `trik show`, and blocks of a
+    /// data-flow program can be named by their captions.
+    #[arg(long, value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
@@ -47,7 +47,7 @@ pub(crate) struct WhereArgs {
 /// What `trik break` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct BreakArgs {
-    /// A line of the text of --file, the id of a block, or the name of a variable that is to change (with --change).
+    /// A line of the text of --file, the id of a block, its label in a data-flow program, or the name of a variable that is to change (with --change).
     pub place: String,
     /// Stop only if this expression is true.
     #[arg(long = "if", value_name = "EXPRESSION")]
@@ -199,8 +199,7 @@ fn unreachable(error: Error) -> Refusal {
 
 fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
     let file = at.file.as_ref();
-    let opened = file.map(|file| must_open(file, at.language)).transpose()?;
-    Ok(opened.map(|opened| Listing::of(&opened.project, at.language)))
+    file.map(|file| listing_of(file, at.language)).transpose()
 }
 
 /// The block of a line or an id.
@@ -216,7 +215,7 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
             let block = line.and_then(|line| listing.blocks(line).first().cloned());
             block.ok_or_else(|| none("the diagram has no such line"))
         }
-        (Ok(_), None) => Err(none("lines are those of --file FILE.qrs")),
+        (Ok(_), None) => Err(none("lines are those of --file FILE")),
         (Err(_), Some(listing)) => {
             let id = listing.id_of(place).map(Into::into);
             id.ok_or_else(|| none("the diagram has no such block"))

@@ -6,10 +6,10 @@
 use super::link::{Link, Message, ms};
 use super::output::{harmless, say};
 use super::target::{Target, target, the_one};
-use crate::debug::listing::Listing;
+use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::Report;
+use crate::debug::stops::words;
 use crate::debug::target::why_not;
-use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
 use crate::limits;
@@ -31,7 +31,7 @@ const DRAWN: usize = 40;
 /// What `trik watch` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct WatchArgs {
-    /// The diagram that runs, a file NAME.qrs: with it the sentence of each block is shown.
+    /// The diagram that runs, a file NAME.qrs or NAME.flow: with it the sentence of each block is shown.
     pub file: Option<PathBuf>,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
@@ -53,10 +53,7 @@ pub(crate) struct WatchArgs {
 pub(crate) fn run(args: &WatchArgs) -> Result<u8, Refusal> {
     let listing = match &args.file {
         None => None,
-        Some(file) => {
-            let opened = must_open(file, args.language)?;
-            Some(Listing::of(&opened.project, args.language))
-        }
+        Some(file) => Some(listing_of(file, args.language)?),
     };
     Ok(match watch(args, listing.as_ref()) {
         Ok(code) => code,
@@ -180,7 +177,7 @@ impl<'a> Picture<'a> {
         Ok(())
     }
 
-    /// Threads, then variables.
+    /// Threads, then variables, then ports of a data-flow program.
     fn lines(&mut self, told: &Report) -> Vec<String> {
         let mut lines = Vec::new();
         for thread in told.threads.iter().take(limits::WATCH_LINES_MAX) {
@@ -217,6 +214,28 @@ impl<'a> Picture<'a> {
                 Ok(_) | Err(_) => String::new(),
             };
             lines.push(format!("{name:12} {value:>14.14}  {spark}"));
+        }
+        if self.is_drawn && !told.ports.is_empty() {
+            lines.push(String::new());
+        }
+        lines.extend(self.ports(told));
+        lines
+    }
+
+    /// The last token of each port, and tokens that wait or are lost.
+    fn ports(&mut self, told: &Report) -> Vec<String> {
+        let mut lines = Vec::new();
+        for port in told.ports.iter().take(limits::WATCH_LINES_MAX) {
+            let (name, value) = (harmless(&port.full_name()), harmless(&port.value));
+            lines.push(match self.is_drawn {
+                true => format!("{name:24} {value:>14.14}  {:>8}", port.count),
+                false => format!("{name} -> {value}"),
+            });
+        }
+        for port in told.waiting.iter().take(limits::WATCH_LINES_MAX) {
+            let name = harmless(&port.full_name());
+            let words = words::waiting(&name, port.count, port.lost);
+            lines.push(words::said(self.locale, words));
         }
         lines
     }

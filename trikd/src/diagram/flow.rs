@@ -1,21 +1,29 @@
 //! Programs of data flow on a robot: the machine of crate `lang-dataflow` with the tree as its robot.
 //!
-//! Owns the time of a running program and what is told of it. A program of data flow has no debugger yet and cannot be
-//! changed while it runs: who asks for either is told so.
+//! Owns the time of a running program, when something is told of it, and how a new version of it is read. What orders of a
+//! debugger do is known in `lang_dataflow::debug`, and what a new version keeps in `lang_dataflow::machine::patch`.
 
+use super::live::Answer;
+use super::motors::Motors;
 use super::robot::Robot;
 use super::watch::Watch;
-use super::{errors_among, since, wait};
+use super::{errors_among, opened, read_save, since, wait};
 use crate::engine::{Failure, NoDiagram, Outcome};
 use crate::host::{Host, Incoming};
+use crate::limits;
+use crate::protocol::news;
+use crate::protocol::program::ALL;
+use lang_dataflow::debug::Desk;
 use lang_dataflow::machine::Machine;
-use lang_dataflow::machine::trace::Trace;
+use lang_dataflow::machine::patch::{Refused, Version};
+use lang_dataflow::machine::trace::{Deaf, Trace};
 use lang_dataflow::program::{NodeId, Program};
 use lang_dataflow::project::Project;
+use lang_dataflow::read::{Language, language};
 use lang_diagram::machine::{STEP_MS, Status};
-use lang_text::json::Object;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Severity};
 use std::io;
+use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -50,93 +58,214 @@ impl Trace for Heard<'_> {
     }
 }
 
-/// Steps until the program has ended or the daemon is gone.
+/// A program that runs, with its debugger.
+struct Flow {
+    desk: Desk,
+    motors: Motors,
+    /// Warnings that were told.
+    warned: usize,
+    was_stopped: bool,
+    told_at: u32,
+}
+
+/// Steps until the program has ended or the daemon is gone; `is_debugged`: it stops before its first block.
 pub(super) fn run(
     program: Rc<Program>,
+    is_debugged: bool,
     robot: &mut Robot<'_>,
     watch: &mut Watch,
     host: &Host,
 ) -> Outcome {
-    let mut machine = Machine::new(program);
-    let ran = steps(&mut machine, robot, watch, host);
-    machine.stop(robot, &mut lang_dataflow::machine::trace::Deaf);
+    let mut flow = Flow {
+        desk: Desk::new(Machine::new(program), watch.locale()),
+        motors: Motors::default(),
+        warned: 0,
+        was_stopped: false,
+        told_at: 0,
+    };
+    if is_debugged {
+        flow.desk.stop_first();
+    }
+    let ran = flow.steps(robot, watch, host);
+    flow.desk.stop(&mut flow.motors.over(robot), &mut Deaf);
     ran.map_err(|error| Failure::Deaf(error.into()))?;
-    match machine.errors() {
+    match flow.desk.machine().errors() {
         [] => Ok(()),
         // They were told when they happened.
         _ => Err(Failure::Told),
     }
 }
 
-fn steps(
-    machine: &mut Machine,
-    robot: &mut Robot<'_>,
-    watch: &mut Watch,
-    host: &Host,
-) -> io::Result<()> {
-    let start = Instant::now();
-    let step = Duration::from_millis(STEP_MS.into());
-    let mut due = start;
-    let mut warned = 0;
-    loop {
-        let now = since(start);
-        let mut heard = Heard {
-            watch,
-            has_fired: false,
-        };
-        let status = machine.step(now, robot, &mut heard);
-        let has_fired = heard.has_fired;
-        for problem in &machine.warnings()[warned..] {
-            host.info(&problem.in_locale(watch.locale()))?;
+impl Flow {
+    fn steps(&mut self, robot: &mut Robot<'_>, watch: &mut Watch, host: &Host) -> io::Result<()> {
+        let start = Instant::now();
+        let step = Duration::from_millis(STEP_MS.into());
+        let mut due = start;
+        loop {
+            let now = since(start);
+            let mut heard = Heard {
+                watch,
+                has_fired: false,
+            };
+            let status = self
+                .desk
+                .step(now, &mut self.motors.over(robot), &mut heard);
+            let has_fired = heard.has_fired;
+            self.motors.settle(self.desk.is_at_rest(), robot);
+            let warnings = self.desk.machine().warnings();
+            for problem in warnings.iter().skip(self.warned) {
+                host.info(&problem.in_locale(watch.locale()))?;
+            }
+            self.warned = warnings.len();
+            watch.report_flow(self.desk.machine(), has_fired, now, host)?;
+            self.tell(now, status != Status::Running, host)?;
+            if status != Status::Running {
+                return Ok(());
+            }
+            robot.go_on();
+            // Steps that are missed are not made up: timers look at the time, not at steps.
+            due = (due + step).max(Instant::now());
+            loop {
+                while let Some(message) = host.waiting()? {
+                    if matches!(message, Incoming::Gone) {
+                        return Ok(());
+                    }
+                    self.hear(message, since(start), (robot, watch), host)?;
+                }
+                if !wait(host, due)? {
+                    break;
+                }
+            }
         }
-        warned = machine.warnings().len();
-        watch.report_flow(machine, has_fired, now, host)?;
-        if status != Status::Running {
+    }
+
+    /// Tells all who debug what is new, if it is time; after an order it always is.
+    fn tell(&mut self, now: u32, is_time: bool, host: &Host) -> io::Result<()> {
+        let is_stopped = self.desk.is_stopped();
+        let is_due = now.saturating_sub(self.told_at) >= limits::WATCH_MS;
+        if !is_time && !is_due && is_stopped == self.was_stopped {
             return Ok(());
         }
-        robot.go_on();
-        // Steps that are missed are not made up: timers look at the time, not at steps.
-        due = (due + step).max(Instant::now());
-        loop {
-            while let Some(message) = host.waiting()? {
-                if matches!(message, Incoming::Gone) {
-                    return Ok(());
-                }
-                hear(message, machine, (robot, watch), host)?;
+        self.was_stopped = is_stopped;
+        self.told_at = now;
+        match self.desk.news() {
+            Some(state) => host.debug(ALL, &state),
+            None => Ok(()),
+        }
+    }
+
+    /// Does what the daemon asks for between two steps.
+    fn hear(
+        &mut self,
+        message: Incoming,
+        now: u32,
+        (robot, watch): (&mut Robot<'_>, &mut Watch),
+        host: &Host,
+    ) -> io::Result<()> {
+        match message {
+            Incoming::Mail(sender, text) => robot.post(sender, text),
+            Incoming::Reply(number, text) => robot.answer(number, text),
+            Incoming::Web => {
+                let variables = self.desk.machine().variables();
+                host.web(&super::watch::variables_of(variables))?;
             }
-            if !wait(host, due)? {
-                break;
+            Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
+            // There are no threads whose block could be gone.
+            Incoming::Patch(_, path) => {
+                let answer = self.patch(&path, robot, watch.locale());
+                host.changed(answer.is_changed, &answer.text)?;
+                self.tell(now, true, host)?;
             }
+            Incoming::Set(text) => {
+                let answer = self.set(&text, watch.locale());
+                host.changed(answer.is_changed, &answer.text)?;
+                self.tell(now, true, host)?;
+            }
+            Incoming::Debug { client, tag, order } => {
+                let answer = self.desk.order((tag, &order));
+                self.motors.settle(self.desk.is_at_rest(), robot);
+                host.debug(client, &answer)?;
+                self.tell(now, true, host)?;
+            }
+            Incoming::DebugLeft => {
+                self.desk.left();
+                self.motors.settle(self.desk.is_at_rest(), robot);
+                self.tell(now, true, host)?;
+            }
+            Incoming::Direct(_) => host.error("a data-flow program takes no direct commands")?,
+            // The caller knows.
+            Incoming::Gone => {}
+        }
+        Ok(())
+    }
+
+    /// Replaces the program by the one in a file, whole or not at all.
+    fn patch(&mut self, path: &Path, robot: &mut Robot<'_>, locale: Locale) -> Answer {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let refused = |why: Refused| Answer::unchanged(&name, &explained(&why, locale));
+        let project = match project_in(path, locale) {
+            Ok(project) => project,
+            Err(why) => return Answer::unchanged(&name, &why.to_string()),
+        };
+        let version = match Version::of(&project) {
+            Ok(version) => version,
+            Err(why) => return refused(why),
+        };
+        match self.desk.patch(&version, &mut self.motors.over(robot)) {
+            Ok(patched) => {
+                // It keeps those that there were.
+                self.warned = self.desk.machine().warnings().len();
+                Answer::changed(&name, &patched.to_string())
+            }
+            Err(why) => refused(why),
+        }
+    }
+
+    /// Assigns a variable: `NAME=EXPRESSION`.
+    fn set(&mut self, text: &str, locale: Locale) -> Answer {
+        let (name, expression) = text.split_once('=').unwrap_or((text, ""));
+        let name = name.trim();
+        match self.desk.assign(name, expression.trim()) {
+            Ok(()) => {
+                let value = self.desk.machine().value_of(name);
+                let value = value.map_or_else(String::new, |value| value.brief());
+                Answer::changed(name, &format!("{name} = {value}"))
+            }
+            Err(problems) => Answer::unchanged(name, &lines(&problems, locale)),
         }
     }
 }
 
-/// Does what the daemon asks for between two instants.
-fn hear(
-    message: Incoming,
-    machine: &Machine,
-    (robot, watch): (&mut Robot<'_>, &mut Watch),
-    host: &Host,
-) -> io::Result<()> {
-    match message {
-        Incoming::Mail(sender, text) => robot.post(sender, text),
-        Incoming::Reply(number, text) => robot.answer(number, text),
-        Incoming::Web => host.web(&super::watch::variables_of(machine.variables()))?,
-        Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-        Incoming::Patch(..) | Incoming::Set(_) => host.changed(false, NOT_YET)?,
-        Incoming::Debug { client, tag, .. } => {
-            let answer = Object::new(NOT_YET.len())
-                .text("why", NOT_YET)
-                .plain("to", tag);
-            host.debug(client, &answer.plain("done", false).done())?;
-        }
-        Incoming::DebugLeft => {}
-        Incoming::Direct(_) => host.error("a data-flow program takes no direct commands")?,
-        // The caller knows.
-        Incoming::Gone => {}
+/// The data-flow program in a file: a text or a save.
+fn project_in(path: &Path, locale: Locale) -> Result<Project, NoDiagram> {
+    let bytes = read_save(path)?;
+    if path.extension().is_some_and(|ending| ending == ENDING) {
+        return of_text(bytes, locale);
     }
-    Ok(())
+    let opened = opened(&bytes, locale)?;
+    if language(&opened.save) != Language::Dataflow {
+        return Err(NoDiagram::Problems(vec![OTHER_LANGUAGE.to_owned()]));
+    }
+    let (project, problems) = lang_dataflow::read::project(&opened.save);
+    let is_error = |one: &Problem| one.severity == Severity::Error;
+    match problems.iter().any(is_error) {
+        true => Err(errors_among(&problems, locale)),
+        false => Ok(project),
+    }
 }
 
-/// What who wants to look into a program or to change it is answered.
-pub(super) const NOT_YET: &str = "a data-flow program has no debugger and cannot be changed while it runs: end it, and start the new one";
+fn explained(why: &Refused, locale: Locale) -> String {
+    match why {
+        Refused::Ended => news::NO_DIAGRAM.to_owned(),
+        Refused::Mistakes(problems) => lines(problems, locale),
+    }
+}
+
+/// A line for each problem.
+fn lines(problems: &[Problem], locale: Locale) -> String {
+    let lines = problems.iter().map(|problem| problem.in_locale(locale));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Why a save with diagrams of control flow does not replace a data-flow program.
+const OTHER_LANGUAGE: &str = "its diagrams are of control flow, and a data-flow program runs: end that, and start the new one";

@@ -24,14 +24,14 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    fn changed(name: &str, what: &str) -> Self {
+    pub(super) fn changed(name: &str, what: &str) -> Self {
         Self {
             is_changed: true,
             text: news::changed(name, what),
         }
     }
 
-    fn unchanged(name: &str, why: &str) -> Self {
+    pub(super) fn unchanged(name: &str, why: &str) -> Self {
         Self {
             is_changed: false,
             text: news::unchanged(name, why),

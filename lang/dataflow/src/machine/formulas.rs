@@ -6,6 +6,7 @@
 use super::COMPAT;
 use super::state::State;
 use super::words;
+use crate::lower::DATA;
 use crate::program::{Formula, NodeId, Program, Text};
 use lang_expr::names::{is_own, own_name};
 use lang_expr::tree::Node as Part;
@@ -195,6 +196,37 @@ impl Formulas {
         }
         lang_expr::analyse(&mut source, &mut self.names)?;
         lang_expr::evaluate(&source, &self.names, &mut self.store, outside).map(Some)
+    }
+
+    /// Whether a condition holds for a token, which it sees as `data`. It reads variables, and changes nothing.
+    pub fn holds(
+        &mut self,
+        text: &str,
+        token: &Value,
+        outside: &mut dyn Outside,
+    ) -> Result<bool, Vec<Problem>> {
+        let [data] = DATA else { return Ok(false) };
+        let own = own_name(data, NodeId::MAX);
+        let rename = |name: &str| (name == *data).then(|| own.clone());
+        let mut source = Source::with_own_names(text, Wanted::Bool, &rename);
+        let assigns = |part: &Part| matches!(part, Part::Assign { .. });
+        let is_new = |name: &str| name != &*own && self.names.find(name).is_none();
+        if source.tree().nodes.iter().any(assigns) || source.names().any(is_new) {
+            return Err(vec![Problem::error(words::only_known_variables())]);
+        }
+        if source.names().any(|name| *name == *own)
+            && let Some(slot) = self.names.slot(&own)
+        {
+            if super::values::is_unit(token) {
+                return Err(vec![Problem::error(words::unit())]);
+            }
+            self.names.retype(slot, token);
+            if self.store.set(slot, token.clone()).is_err() {
+                return Err(vec![Problem::error(words::too_many_variables())]);
+            }
+        }
+        lang_expr::analyse(&mut source, &mut self.names)?;
+        lang_expr::evaluate_bool(&source, &self.names, &mut self.store, outside)
     }
 
     /// Gives a variable of the project a value.

@@ -116,16 +116,20 @@ impl Machine {
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         if let Err(at) = self.subscribed.binary_search(&id) {
-            let is_there = match source {
-                Source::Sensor(_) | Source::Detect(_) => self.reading(source, env).is_some(),
-                Source::Encoders(_) | Source::Gamepad | Source::Receive => true,
-            };
-            if !is_there {
+            if !self.is_readable(source, env) {
                 return Err(self.fault(id, words::no_reading(), env));
             }
             self.subscribed.insert(at, id);
         }
         Ok(())
+    }
+
+    /// Whether the robot has what a block gives readings of.
+    pub(super) fn is_readable(&mut self, source: &Source, env: &mut Env<'_>) -> bool {
+        match source {
+            Source::Sensor(_) | Source::Detect(_) => self.reading(source, env).is_some(),
+            Source::Encoders(_) | Source::Gamepad | Source::Receive => true,
+        }
     }
 
     /// What a block would give now that gives one sensor's readings.

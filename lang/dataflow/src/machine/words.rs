@@ -6,6 +6,7 @@ use crate::limits;
 pub(crate) use crate::words::{bad_width, loop_step, no_choice};
 use crate::words::{list, short};
 use lang_expr::Value;
+use lang_text::near;
 use lang_text::problem::Words;
 
 /// What a value is, as a person reads it.
@@ -216,5 +217,56 @@ pub(crate) fn file_too_long(file: &str, most: usize) -> Words {
     Words::new(
         format!("'{}' has more than {most} words or lines", short(file)),
         format!("в '{}' больше {most} слов или строк", short(file)),
+    )
+}
+
+pub(crate) fn asks_the_robot() -> Words {
+    Words::new(
+        "an expression from outside reads no sensors and no random numbers, and prints nothing",
+        "выражение снаружи не читает датчиков и случайных чисел и ничего не печатает",
+    )
+}
+
+pub(crate) fn only_known_variables() -> Words {
+    Words::new(
+        "it may read the variables of the program that have values, and assigns none",
+        "здесь можно читать переменные программы, у которых есть значения, и нельзя присваивать",
+    )
+}
+
+pub(crate) fn no_variable(name: &str, known: &[&str]) -> Words {
+    let near = near::did_you_mean(name, known.iter().copied());
+    Words::new(
+        format!(
+            "the program has no variable '{}' with a value{}",
+            short(name),
+            near.english
+        ),
+        format!(
+            "в программе нет переменной '{}' со значением{}",
+            short(name),
+            near.russian
+        ),
+    )
+}
+
+pub(crate) fn only_blocks() -> Words {
+    Words::new(
+        "a data-flow program stops before blocks: choose a block that reads the variable, with a condition",
+        "потоковая программа останавливается перед блоками: выберите блок, который читает переменную, с условием",
+    )
+}
+
+pub(crate) fn no_log() -> Words {
+    Words::new(
+        "breakpoints of a data-flow program write no lines: connect a Say block, or look at the ports",
+        "точки останова потоковой программы не пишут строк: присоедините блок \"Сказать\" или смотрите на порты",
+    )
+}
+
+pub(crate) fn starts_by_itself() -> Words {
+    Words::new(
+        "this block gives readings by itself: stop at the block after it",
+        "этот блок сам даёт показания: остановитесь на блоке после него",
     )
 }

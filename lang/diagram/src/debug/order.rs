@@ -159,7 +159,7 @@ impl Order {
     }
 
     /// Whether it makes sense only while a debugger is attached.
-    pub(super) fn is_for_debugger(&self) -> bool {
+    pub fn is_for_debugger(&self) -> bool {
         match self {
             Self::Attach
             | Self::Look

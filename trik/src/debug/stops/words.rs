@@ -253,3 +253,19 @@ pub(crate) fn another_runs(diagram: &str, block: &str) -> Words {
         format!(">     {diagram}, {block}: этого блока в файле нет: выполняется другая диаграмма"),
     )
 }
+
+/// What a port of a data-flow program is about to get.
+pub(crate) fn token(port: &str, value: &str) -> Words {
+    Words::new(
+        format!("      {port} gets {value}"),
+        format!("      {port} получит {value}"),
+    )
+}
+
+/// Tokens that wait at a port, and those that it has lost.
+pub(crate) fn waiting(port: &str, count: u64, lost: u64) -> Words {
+    Words::new(
+        format!("{port}: {count} tokens wait, {lost} lost"),
+        format!("{port}: ждёт сигналов {count}, потеряно {lost}"),
+    )
+}

@@ -1,6 +1,6 @@
-//! Programs of data flow on robots: as text and as saves, and what they cannot do yet.
+//! Programs of data flow on robots: as text and as saves, changed, watched and stopped while they run.
 
-use super::Reachable;
+use super::{Reachable, Running};
 use harness::eventually;
 use lang_dataflow::{save, text};
 
@@ -83,4 +83,84 @@ fn mistakes_of_a_data_flow_program_are_told_where_they_are_and_nothing_moves() {
         late.stderr
     );
     assert!(reachable.rests());
+}
+
+/// Turns on the spot for ever, and counts its readings.
+const TURN: &str = "
+diagram \"Turn\"
+  count: Variable(variable = \"n = 0; power = 20\")
+  wall: Sensor(VarName = sensorD1)
+  turn: \"Text programming\"(IO0 = `n = n + 1; power + 0*I0`)
+  wheels: Motors
+  wall.OUT -> turn.I0
+  turn.O0 -> wheels.M3
+";
+
+/// Whether a motor turns.
+fn turns(reachable: &Reachable, motor: u8) -> bool {
+    reachable.robot.duty(motor).is_ok_and(|duty| duty != 0)
+}
+
+#[test]
+fn a_data_flow_program_is_changed_watched_and_stopped_while_it_runs() {
+    let Some(reachable) = Reachable::new() else {
+        return;
+    };
+    let trik = |arguments: &[&str]| {
+        let ip = reachable.ip();
+        let all: Vec<&str> = arguments.iter().copied().chain(["--robot", ip]).collect();
+        reachable.robot.home.run(&all)
+    };
+    let file = reachable.robot.home.0.file("turn.flow", TURN);
+    let file = file.to_str().expect("a name in UTF-8").to_owned();
+    let mut command =
+        reachable
+            .robot
+            .home
+            .command(&["run", &file, "--watch", "--robot", reachable.ip()]);
+    let running = Running::new(&mut command);
+    eventually("it turns", || turns(&reachable, 3));
+    // A save changes the wheel; the variables stay.
+    reachable
+        .robot
+        .home
+        .0
+        .file("turn.flow", TURN.replace("wheels.M3", "wheels.M4"));
+    eventually("the other wheel turns", || turns(&reachable, 4));
+    eventually("what was changed is told", || {
+        running
+            .said()
+            .contains("turn.flow is changed: 4 blocks kept, 0 new, 0 gone")
+    });
+    let set = trik(&["set", "power=power + 5"]);
+    assert_eq!(set.code(), 0, "{}", set.stderr);
+    // The first look begins to listen; one line for each change.
+    let watched = trik(&["watch", "--seconds", "2"]);
+    assert_eq!(watched.code(), 0, "{}", watched.stderr);
+    for told in ["power = 25", "turn.O0 -> 25", "wall.OUT -> "] {
+        assert!(watched.stdout.contains(told), "{told}: {}", watched.stdout);
+    }
+    let stopped = trik(&["break", "wheels", "--file", &file, "--if", "data > 20"]);
+    assert_eq!(stopped.code(), 0, "{}", stopped.stderr);
+    assert!(
+        stopped.stdout.contains("wheels.M4 gets 25"),
+        "{}",
+        stopped.stdout
+    );
+    eventually("its motors rest", || reachable.rests());
+    let next = trik(&["step"]);
+    assert_eq!(next.code(), 0, "{}", next.stderr);
+    assert!(next.stdout.contains("turn.I0 gets "), "{}", next.stdout);
+    assert_eq!(trik(&["continue"]).code(), 0);
+    eventually("it turns again", || turns(&reachable, 4));
+    let refused = trik(&["set", "pwer=1"]);
+    assert_eq!(refused.code(), 1);
+    assert!(
+        refused.stderr.contains("did you mean 'power'?"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(trik(&["stop"]).code(), 0);
+    assert!(reachable.rests());
+    drop(running);
 }

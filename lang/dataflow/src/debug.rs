@@ -1,0 +1,331 @@
+//! A debugger's desk for programs of data flow: orders come in as texts, what they do goes out as JSON.
+//!
+//! Owns what each order does to a program of this language, and what is told: variables, the last token of each port, and
+//! tokens that wait. The words of orders and the form of answers are those of `lang_diagram::debug` and
+//! `docs/protocol.md`. The owner of the desk gives it the robot and the clock, carries the texts, and decides what motors do
+//! at a stop. Knows no transport, no clients and no files.
+
+mod report;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use crate::machine::Machine;
+use crate::machine::patch::{Patched, Refused as NoVersion, Version};
+use crate::machine::stops::{NoPoint, Step};
+use crate::machine::trace::Trace;
+use crate::program::{NodeId, Target};
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::debug::desk::Refused as Common;
+use lang_diagram::debug::order::Order;
+use lang_diagram::debug::{Breakpoint, NoBreakpoint, Step as Walk};
+use lang_diagram::machine::Status;
+use lang_expr::Value;
+use lang_text::json::Object;
+use lang_text::problem::{Locale, Problem, Words};
+use std::collections::BTreeMap;
+
+/// A program with its debugger, for people elsewhere.
+#[derive(Clone, Debug)]
+pub struct Desk {
+    machine: Machine,
+    locale: Locale,
+    tap: Tap,
+    is_attached: bool,
+    /// Whether motors rest while the program is stopped.
+    motors_rest: bool,
+    told: Announcement,
+}
+
+/// The last token of each port, and how many there were; of those alone that came after somebody had asked first.
+#[derive(Clone, Debug, Default)]
+struct Tap {
+    is_listening: bool,
+    ports: BTreeMap<(NodeId, u8), (Value, u32)>,
+}
+
+/// What is told by itself when it changes.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Announcement {
+    /// Nothing is to be told.
+    Detached,
+    Runs,
+    Stopped,
+    Ended,
+}
+
+/// Why an order is not carried out.
+#[derive(Clone, Debug, PartialEq)]
+enum Refused {
+    /// As with other diagrams.
+    Common(Common),
+    /// A program of this language cannot do that.
+    Cannot(Words),
+}
+
+impl From<Common> for Refused {
+    fn from(why: Common) -> Self {
+        Self::Common(why)
+    }
+}
+
+impl From<NoPoint> for Refused {
+    fn from(why: NoPoint) -> Self {
+        match why {
+            NoPoint::NoSuchBlock => Common::Breakpoint(NoBreakpoint::NoSuchBlock).into(),
+            NoPoint::TooMany => Common::Breakpoint(NoBreakpoint::TooMany).into(),
+            NoPoint::Cannot(words) => Self::Cannot(words),
+        }
+    }
+}
+
+/// Tells the tap and somebody else.
+struct Both<'a> {
+    tap: &'a mut Tap,
+    other: &'a mut dyn Trace,
+}
+
+impl Trace for Both<'_> {
+    fn sent(&mut self, now: u32, from: NodeId, port: u8, value: &Value) {
+        if self.tap.is_listening {
+            let (last, count) = self.tap.ports.entry((from, port)).or_default();
+            last.clone_from(value);
+            *count = count.saturating_add(1);
+        }
+        self.other.sent(now, from, port, value);
+    }
+
+    fn fired(&mut self, now: u32, node: NodeId) {
+        self.other.fired(now, node);
+    }
+
+    fn dropped(&mut self, now: u32, at: Target) {
+        self.other.dropped(now, at);
+    }
+
+    fn told(&mut self, now: u32, command: &Command<'_>) {
+        self.other.told(now, command);
+    }
+
+    fn trap(&mut self, now: u32, problem: &Problem) {
+        self.other.trap(now, problem);
+    }
+}
+
+impl Desk {
+    /// For a program to which no debugger is attached yet.
+    pub fn new(machine: Machine, locale: Locale) -> Self {
+        Self {
+            machine,
+            locale,
+            tap: Tap::default(),
+            is_attached: false,
+            motors_rest: true,
+            told: Announcement::Detached,
+        }
+    }
+
+    /// The program.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Whether it is stopped.
+    pub fn is_stopped(&self) -> bool {
+        self.machine.stopped().is_some()
+    }
+
+    /// Whether motors have to rest now.
+    pub fn is_at_rest(&self) -> bool {
+        self.motors_rest && self.is_stopped()
+    }
+
+    /// The program stops before its first reaction.
+    pub fn stop_first(&mut self) {
+        self.is_attached = true;
+        self.tap.is_listening = true;
+        self.machine.pause();
+    }
+
+    /// Runs what is due at a moment of the caller's clock, in milliseconds.
+    pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Status {
+        let mut both = Both {
+            tap: &mut self.tap,
+            other: trace,
+        };
+        self.machine.step(now, brick, &mut both)
+    }
+
+    /// Ends the program from outside.
+    pub fn stop(&mut self, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        self.machine.stop(brick, trace);
+    }
+
+    /// A new version takes the place of the program.
+    ///
+    /// # Errors
+    /// Why it does not; nothing has changed then.
+    pub fn patch(
+        &mut self,
+        version: &Version,
+        brick: &mut dyn Brick,
+    ) -> Result<Patched, NoVersion> {
+        let patched = self.machine.patch(version, brick)?;
+        // Nodes have other numbers now.
+        self.tap.ports.clear();
+        self.tell_again();
+        Ok(patched)
+    }
+
+    /// Gives a variable the value of an expression.
+    ///
+    /// # Errors
+    /// What is wrong with either.
+    pub fn assign(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
+        self.machine.assign_aside(name, text)?;
+        self.tell_again();
+        Ok(())
+    }
+
+    fn tell_again(&mut self) {
+        self.told = Announcement::Detached;
+    }
+
+    /// The client in control is gone: a program that is stopped stays so, with its motors at rest; another one loses its
+    /// debugger.
+    pub fn left(&mut self) {
+        match self.is_stopped() {
+            true => self.motors_rest = true,
+            false => self.detach(),
+        }
+    }
+
+    /// Carries out an order; the answer is a JSON object that ends with the tag of the order.
+    pub fn order(&mut self, (tag, text): (u32, &str)) -> String {
+        let parsed = Order::parse(text).map_err(|why| Common::Order(why).into());
+        let done = parsed.and_then(|order| self.carry_out(&order));
+        let (is_done, told) = match done {
+            Ok(more) => (true, more),
+            Err(why) => (false, report::object().text("why", &self.explained(&why))),
+        };
+        told.plain("to", tag).plain("done", is_done).done()
+    }
+
+    /// Where the program is, if that was not told yet, for everybody who looks on.
+    pub fn news(&mut self) -> Option<String> {
+        let now = match (self.is_attached, self.machine.status()) {
+            (false, _) => Announcement::Detached,
+            (true, Status::Ended { .. }) => Announcement::Ended,
+            (true, Status::Running) if self.is_stopped() => Announcement::Stopped,
+            (true, Status::Running) => Announcement::Runs,
+        };
+        if now == self.told {
+            return None;
+        }
+        self.told = now;
+        (now != Announcement::Detached).then(|| self.state())
+    }
+
+    fn state(&self) -> String {
+        report::state(
+            &self.machine,
+            (self.is_attached, &self.tap.ports),
+            self.locale,
+        )
+    }
+
+    fn explained(&self, why: &Refused) -> String {
+        match why {
+            Refused::Common(why) => why.in_locale(self.locale),
+            Refused::Cannot(words) => words.in_locale(self.locale).to_owned(),
+        }
+    }
+
+    fn carry_out(&mut self, order: &Order) -> Result<Object, Refused> {
+        if order.is_for_debugger() && !self.is_attached {
+            return Err(Common::NotAttached.into());
+        }
+        let machine = &mut self.machine;
+        match order {
+            Order::Attach => self.is_attached = true,
+            Order::Detach => self.detach(),
+            Order::Look => {}
+            Order::Pause => match machine.status() {
+                Status::Running => machine.pause(),
+                Status::Ended { .. } => return Err(Common::Ended.into()),
+            },
+            Order::Continue => self.go_on(Machine::go_on)?,
+            Order::Step(_, Some(_)) | Order::Hold(_) | Order::Release(_) => {
+                return Err(Refused::Cannot(words::no_threads()));
+            }
+            Order::Step(Walk::Into | Walk::Over, None) => {
+                self.go_on(|machine| machine.walk(Step::Reaction))?;
+            }
+            Order::Step(Walk::Out, None) => self.go_on(|machine| machine.walk(Step::Instant))?,
+            Order::Until(block) => {
+                machine.add_point(Breakpoint {
+                    is_once: true,
+                    ..Breakpoint::before(block.clone())
+                })?;
+                machine.go_on();
+                self.tell_again();
+            }
+            Order::Back(_) => return Err(Refused::Cannot(words::no_past())),
+            // It is always there.
+            Order::Present => {}
+            Order::Break(point) => {
+                let number = machine.add_point(point.clone())?;
+                return Ok(report::object().plain("number", number));
+            }
+            Order::Clear(number) => {
+                let is_found = machine.clear_points(*number);
+                return found(is_found, *number);
+            }
+            Order::Enable(number, is_enabled) => {
+                let is_found = machine.enable_point(*number, *is_enabled);
+                return found(is_found, Some(*number));
+            }
+            Order::Breakpoints(after) => return Ok(report::points(machine, *after)),
+            Order::Errors(true) => return Err(Refused::Cannot(words::errors_end())),
+            Order::Errors(false) => return Ok(report::object()),
+            Order::Motors(rest) => {
+                self.motors_rest = *rest;
+                return Ok(report::object());
+            }
+            Order::Set(name, text) => {
+                self.assign(name, text).map_err(Common::Expression)?;
+                let value = self.machine.value_of(name);
+                return Ok(value.map_or_else(report::object, |value| report::value(&value)));
+            }
+            Order::Evaluate(text) => {
+                let value = machine.evaluate_aside(text).map_err(Common::Expression)?;
+                return Ok(report::value(&value));
+            }
+        }
+        self.tap.is_listening = true;
+        Ok(report::object().plain("program", self.state()))
+    }
+
+    /// Lets a program go on that is stopped.
+    fn go_on(&mut self, how: impl FnOnce(&mut Machine)) -> Result<(), Refused> {
+        if !self.is_stopped() {
+            return Err(Common::NotStopped.into());
+        }
+        how(&mut self.machine);
+        self.tell_again();
+        Ok(())
+    }
+
+    fn detach(&mut self) {
+        self.is_attached = false;
+        self.motors_rest = true;
+        self.machine.let_go();
+    }
+}
+
+fn found(is_found: bool, number: Option<u32>) -> Result<Object, Refused> {
+    match is_found {
+        true => Ok(report::object()),
+        false => Err(Common::NoBreakpoint(number).into()),
+    }
+}

@@ -1,0 +1,352 @@
+//! Programs under a debugger, and programs that change while they run.
+
+use super::*;
+use crate::check::check;
+use crate::machine::fixtures::{diagram, project};
+use crate::machine::trace::Deaf;
+use crate::project::{DiagramKind, Project};
+use lang_diagram::ports::Port;
+use std::rc::Rc;
+
+/// A robot whose one reading a test writes, with what it was told.
+#[derive(Default)]
+struct Robot {
+    a1: i32,
+    told: Vec<String>,
+}
+
+impl Brick for Robot {
+    fn command(&mut self, command: Command<'_>) {
+        self.told.push(command.to_string());
+    }
+
+    fn scalar(&mut self, port: Port) -> Option<i32> {
+        (port.name() == "A1").then_some(self.a1)
+    }
+
+    fn vector(&mut self, _port: Port, _into: &mut Vec<i32>) -> bool {
+        false
+    }
+
+    fn random(&mut self, low: i32, _high: i32) -> i32 {
+        low
+    }
+}
+
+fn of(text: &str) -> Project {
+    project(vec![diagram("main", DiagramKind::Main, text)])
+}
+
+fn desk(text: &str) -> Desk {
+    let checked = check(&of(text));
+    assert!(!checked.has_errors(), "{:?}", checked.problems);
+    Desk::new(Machine::new(Rc::new(checked.program)), Locale::English)
+}
+
+fn version(text: &str) -> Version {
+    Version::of(&of(text)).expect("a good program")
+}
+
+const SLOW: &str = "A Sensor\nF Text programming {IO0=n = n + 1; I0 * k}\nV Variable {variable=n = 0; k = 2}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+
+fn runs(desk: &mut Desk, robot: &mut Robot, from: u32, to: u32) {
+    for now in (from..=to).step_by(10) {
+        desk.step(now, robot, &mut Deaf);
+    }
+}
+
+fn last(robot: &Robot) -> &str {
+    robot.told.last().map_or("", String::as_str)
+}
+
+/// What an order is answered.
+fn told(desk: &mut Desk, order: &str) -> String {
+    desk.order((1, order))
+}
+
+#[test]
+fn a_program_that_is_watched_tells_its_variables_and_its_ports() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 20);
+    let first = told(&mut desk, "look");
+    assert!(
+        first.contains("\"state\":\"running\",\"ms\":20,\"attached\":false"),
+        "{first}"
+    );
+    assert!(
+        first.contains("{\"name\":\"n\",\"type\":\"float\",\"value\":\"1\"}"),
+        "{first}"
+    );
+    // Nobody had looked before.
+    assert!(first.contains("\"ports\":[]"), "{first}");
+    runs(&mut desk, &mut robot, 30, 60);
+    let second = told(&mut desk, "look");
+    let port = "\"caption\":\"F\",\"port\":\"O0\",\"type\":\"float\",\"value\":\"10\",\"count\":2}";
+    assert!(second.contains(port), "{second}");
+    assert!(told(&mut desk, "pause").contains("\"done\":false"));
+}
+
+#[test]
+fn a_breakpoint_stops_before_the_token_and_motors_are_told_after_it() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    told(&mut desk, "attach");
+    let added = told(&mut desk, "break qrm:/main/M\nif data > 15");
+    assert!(added.contains("\"number\":1"), "{added}");
+    runs(&mut desk, &mut robot, 0, 40);
+    assert_eq!(last(&robot), "power M3 10");
+    robot.a1 = 8;
+    robot.told.clear();
+    runs(&mut desk, &mut robot, 50, 100);
+    assert_eq!(robot.told, Vec::<String>::new());
+    assert!(desk.is_at_rest());
+    let state = told(&mut desk, "look");
+    assert!(state.contains("\"state\":\"stopped\",\"ms\":60"), "{state}");
+    assert!(
+        state.contains("\"reason\":\"breakpoint\",\"number\":1"),
+        "{state}"
+    );
+    assert!(
+        state.contains("\"port\":\"M3\",\"type\":\"float\",\"value\":\"16\""),
+        "{state}"
+    );
+    assert_eq!(desk.news().map(|news| news.contains("stopped")), Some(true));
+    assert_eq!(desk.news(), None);
+    // The same token goes on, and time with it from where it stood.
+    assert!(told(&mut desk, "step").contains("\"done\":true"));
+    runs(&mut desk, &mut robot, 110, 110);
+    assert_eq!(last(&robot), "power M3 16");
+    assert_eq!(desk.machine().now(), 60);
+    runs(&mut desk, &mut robot, 120, 130);
+    let next = told(&mut desk, "look");
+    assert!(next.contains("\"reason\":\"step\""), "{next}");
+    assert!(next.contains("\"ms\":80"), "{next}");
+    // Without the debugger it runs on.
+    assert!(told(&mut desk, "detach").contains("\"done\":true"));
+    runs(&mut desk, &mut robot, 140, 200);
+    assert!(!desk.is_stopped());
+    assert!(desk.machine().now() > 120);
+}
+
+#[test]
+fn a_step_out_goes_to_the_next_instant() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    desk.stop_first();
+    runs(&mut desk, &mut robot, 0, 50);
+    assert!(desk.is_stopped());
+    assert_eq!((desk.machine().now(), robot.told.len()), (0, 0));
+    told(&mut desk, "step out");
+    runs(&mut desk, &mut robot, 60, 100);
+    let state = told(&mut desk, "look");
+    assert!(state.contains("\"reason\":\"step\""), "{state}");
+    assert!(state.contains("\"ms\":20"), "{state}");
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_with_a_reason() {
+    let mut desk = desk(SLOW);
+    for (order, why) in [
+        ("continue", "attach the debugger first"),
+        ("fly", "'fly' is no order"),
+        ("set zz=1", "no variable 'zz'"),
+        ("evaluate sensorA1", "reads no sensors"),
+        ("evaluate n = 3", "assigns none"),
+        ("evaluate 1 +", "1:"),
+    ] {
+        let answer = told(&mut desk, order);
+        assert!(answer.contains("\"done\":false"), "{answer}");
+        assert!(
+            answer.to_lowercase().contains(&why.to_lowercase()),
+            "{answer}"
+        );
+    }
+    told(&mut desk, "attach");
+    for (order, why) in [
+        ("continue", "not stopped"),
+        ("back", "is not kept"),
+        ("hold main", "no threads"),
+        ("break qrm:/main/Z", "no such block"),
+        ("break qrm:/main/A", "stop at the block after it"),
+        ("watch n", "stops before blocks"),
+        ("errors stop", "ends a data-flow program"),
+        ("clear 7", "7"),
+    ] {
+        let answer = told(&mut desk, order);
+        assert!(answer.contains("\"done\":false"), "{order}: {answer}");
+        assert!(answer.contains(why), "{order}: {answer}");
+    }
+    for _ in 0..crate::limits::BREAKPOINTS_MAX {
+        assert!(told(&mut desk, "break qrm:/main/M").contains("\"done\":true"));
+    }
+    assert!(told(&mut desk, "break qrm:/main/M").contains("\"done\":false"));
+}
+
+#[test]
+fn a_condition_that_cannot_be_computed_stops_and_says_so() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M\nif dta > 15");
+    runs(&mut desk, &mut robot, 0, 40);
+    let state = told(&mut desk, "look");
+    assert!(
+        state.contains("\"reason\":\"condition\",\"number\":1"),
+        "{state}"
+    );
+}
+
+#[test]
+fn a_variable_that_is_set_counts_at_the_next_reaction() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 20);
+    assert_eq!(last(&robot), "power M3 10");
+    assert!(told(&mut desk, "set k=k + 1").contains("\"value\":\"3\""));
+    runs(&mut desk, &mut robot, 30, 40);
+    assert_eq!(last(&robot), "power M3 15");
+    assert!(told(&mut desk, "set k='far'").contains("\"done\":false"));
+}
+
+#[test]
+fn a_new_version_goes_on_where_the_old_one_was() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    let faster = SLOW
+        .replace("I0 * k", "I0 * k + 1")
+        .replace("k = 2", "k = 7");
+    let patched = desk.patch(&version(&faster), &mut robot).expect("a change");
+    assert_eq!(patched.to_string(), "4 blocks kept, 0 new, 0 gone");
+    runs(&mut desk, &mut robot, 50, 60);
+    // The formula is new, and the block that assigns k does not start again.
+    assert_eq!(last(&robot), "power M3 11");
+    let n = desk.machine().variables().find(|(name, _)| *name == "n");
+    assert_eq!(n.map(|(_, value)| value.brief()).as_deref(), Some("3"));
+    // A block that is new starts; one that is gone speaks no more.
+    let other = "B Loop {time=10}\nM Motors\nB.OUT > M.M4";
+    let patched = desk.patch(&version(other), &mut robot).expect("a change");
+    assert_eq!(patched.to_string(), "1 blocks kept, 1 new, 3 gone");
+    robot.told.clear();
+    runs(&mut desk, &mut robot, 70, 100);
+    assert!(
+        robot.told.iter().all(|told| told.starts_with("power M4")),
+        "{:?}",
+        robot.told
+    );
+    assert!(robot.told.len() > 1);
+}
+
+#[test]
+fn windows_counts_and_timers_outlive_a_change() {
+    let wait = "G Motors {M3Power=50}\nW Wait and send {time=100}\nN Motors {M3Power=0}\nG.CF_OUT > W.CF_IN\nW.CF_OUT > N.CF_IN";
+    let (mut desk, mut robot) = (desk(wait), Robot::default());
+    runs(&mut desk, &mut robot, 0, 50);
+    let longer = wait
+        .replace("time=100", "time=500")
+        .replace("M3Power=0", "M3Power=-20");
+    desk.patch(&version(&longer), &mut robot).expect("a change");
+    robot.told.clear();
+    runs(&mut desk, &mut robot, 60, 110);
+    // The wait that had begun ends when it would have, and the first block is not started again.
+    assert!(
+        robot.told.iter().any(|told| told == "power M3 -20"),
+        "{:?}",
+        robot.told
+    );
+    assert!(
+        !robot.told.iter().any(|told| told == "power M3 50"),
+        "{:?}",
+        robot.told
+    );
+}
+
+#[test]
+fn a_version_that_is_wrong_changes_nothing() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    let wrong = Version::of(&of("A Sensor\nM Motors\nF Zip flows\nF.OUT > M.M3"));
+    assert!(matches!(wrong, Err(NoVersion::Mistakes(_))));
+    let absent = SLOW.replace("A Sensor", "A Sensor {VarName=sensorA2}");
+    let refused = desk.patch(&version(&absent), &mut robot);
+    let Err(NoVersion::Mistakes(problems)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!(
+        problems[0]
+            .in_locale(Locale::English)
+            .contains("no such device")
+    );
+    runs(&mut desk, &mut robot, 50, 60);
+    assert_eq!(last(&robot), "power M3 10");
+    desk.stop(&mut robot, &mut Deaf);
+    assert_eq!(
+        desk.patch(&version(SLOW), &mut robot),
+        Err(NoVersion::Ended)
+    );
+}
+
+#[test]
+fn a_program_that_is_stopped_is_changed_where_it_stands() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M");
+    runs(&mut desk, &mut robot, 0, 20);
+    assert!(desk.is_stopped());
+    let same = SLOW.replace("n + 1", "n + 10");
+    desk.patch(&version(&same), &mut robot).expect("a change");
+    assert!(desk.is_stopped());
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 30, 30);
+    assert_eq!(last(&robot), "power M3 10");
+    // The place where it stands may go.
+    runs(&mut desk, &mut robot, 40, 60);
+    assert!(desk.is_stopped());
+    desk.patch(&version("A Sensor\nN Motors\nA.OUT > N.M4"), &mut robot)
+        .expect("a change");
+    runs(&mut desk, &mut robot, 70, 200);
+    assert!(!robot.told.is_empty());
+}

@@ -1,0 +1,78 @@
+//! What a person computes and assigns while a program runs, between two instants.
+//!
+//! Owns what such an expression may not do: it reads no sensor and no random number, so that looking changes nothing.
+
+use super::Machine;
+use super::words;
+use lang_expr::reserved::SensorIndex;
+use lang_expr::{Outside, Value, Wanted};
+use lang_text::problem::Problem;
+
+/// Nobody whom an expression could ask.
+pub(super) struct Nobody {
+    now: u32,
+    /// Whether something was asked that only the robot knows.
+    pub(super) is_asked: bool,
+}
+
+impl Nobody {
+    /// At a moment of the program.
+    pub(super) fn at(now: u32) -> Self {
+        Self {
+            now,
+            is_asked: false,
+        }
+    }
+}
+
+impl Outside for Nobody {
+    fn sensor(&mut self, _sensor: SensorIndex) -> Value {
+        self.is_asked = true;
+        Value::Nil
+    }
+
+    fn time(&mut self) -> i32 {
+        i32::try_from(self.now).unwrap_or(i32::MAX)
+    }
+
+    fn print(&mut self, _text: &str) {
+        self.is_asked = true;
+    }
+
+    fn random(&mut self, _below: i32) -> i32 {
+        self.is_asked = true;
+        0
+    }
+}
+
+impl Machine {
+    /// The value of an expression over the variables of the program. It changes nothing.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn evaluate_aside(&mut self, text: &str) -> Result<Value, Vec<Problem>> {
+        let mut nobody = Nobody::at(self.now);
+        let value = self
+            .formulas
+            .evaluate_text(text, Wanted::Any, &mut nobody)?;
+        match value {
+            Some(value) if !nobody.is_asked => Ok(value),
+            Some(_) => Err(vec![Problem::error(words::asks_the_robot())]),
+            None => Err(vec![Problem::error(words::only_known_variables())]),
+        }
+    }
+
+    /// Gives a variable of the program the value of an expression.
+    ///
+    /// # Errors
+    /// The program has no such variable, or what is wrong with the expression; nothing has changed then.
+    pub fn assign_aside(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
+        let names: Vec<&str> = self.variables().map(|(name, _)| name).collect();
+        if !names.contains(&name) {
+            return Err(vec![Problem::error(words::no_variable(name, &names))]);
+        }
+        let value = self.evaluate_aside(text)?;
+        let assigned = self.formulas.assign(name, value);
+        assigned.map_err(|words| vec![Problem::error(words)])
+    }
+}
