@@ -10,6 +10,8 @@ use lang_text::json::quoted;
 pub enum Level {
     /// Worth knowing; so is success.
     Info,
+    /// Something is strange, and the run goes on.
+    Warning,
     /// The task is failed.
     Error,
     /// The constraints themselves are wrong.

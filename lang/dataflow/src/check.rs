@@ -4,6 +4,7 @@
 //! of once, however many instances it has. Knows no time.
 
 mod edges;
+mod givers;
 mod rates;
 mod shape;
 mod types;

@@ -10,6 +10,7 @@ mod report;
 mod tests;
 mod words;
 
+use crate::limits;
 use crate::machine::Machine;
 use crate::machine::patch::{Patched, Refused as NoVersion, Version};
 use crate::machine::stops::{NoPoint, Step};
@@ -37,11 +38,56 @@ pub struct Desk {
     told: Announcement,
 }
 
-/// The last token of each port, and how many there were; of those alone that came after somebody had asked first.
+/// The last token of each port while somebody looks.
 #[derive(Clone, Debug, Default)]
 struct Tap {
-    is_listening: bool,
-    ports: BTreeMap<(NodeId, u8), (Value, u32)>,
+    /// Until when it listens, in milliseconds of the program.
+    until: Option<u32>,
+    ports: BTreeMap<(NodeId, u8), Seen>,
+}
+
+/// What a port gave.
+#[derive(Clone, Debug)]
+struct Seen {
+    /// The last token; of a long one what of it is told.
+    last: Value,
+    /// The word of its type.
+    kind: &'static str,
+    /// How many there were.
+    count: u32,
+}
+
+impl Tap {
+    /// Listens for a while from now on.
+    fn listen(&mut self, now: u32) {
+        self.until = Some(now.saturating_add(limits::TAP_MS));
+    }
+
+    fn hear(&mut self, now: u32, at: (NodeId, u8), value: &Value) {
+        match self.until {
+            None => return,
+            Some(until) if now > until => {
+                *self = Self::default();
+                return;
+            }
+            Some(_) => {}
+        }
+        if self.ports.len() >= limits::TAP_PORTS_MAX && !self.ports.contains_key(&at) {
+            return;
+        }
+        let is_long = value.cells() > limits::TAP_CELLS_MAX;
+        let seen = self.ports.entry(at).or_insert(Seen {
+            last: Value::Nil,
+            kind: "",
+            count: 0,
+        });
+        seen.kind = report::kind(value);
+        seen.count = seen.count.saturating_add(1);
+        seen.last = match is_long {
+            true => Value::text(value.brief()),
+            false => value.clone(),
+        };
+    }
 }
 
 /// What is told by itself when it changes.
@@ -73,7 +119,11 @@ impl From<NoPoint> for Refused {
     fn from(why: NoPoint) -> Self {
         match why {
             NoPoint::NoSuchBlock => Common::Breakpoint(NoBreakpoint::NoSuchBlock).into(),
-            NoPoint::TooMany => Common::Breakpoint(NoBreakpoint::TooMany).into(),
+            NoPoint::TooMany => Self::Cannot(words::too_many_points(limits::BREAKPOINTS_MAX)),
+            NoPoint::TooLong => Common::Breakpoint(NoBreakpoint::TooLong).into(),
+            NoPoint::Condition(problems) => {
+                Common::Breakpoint(NoBreakpoint::Condition(problems)).into()
+            }
             NoPoint::Cannot(words) => Self::Cannot(words),
         }
     }
@@ -87,11 +137,7 @@ struct Both<'a> {
 
 impl Trace for Both<'_> {
     fn sent(&mut self, now: u32, from: NodeId, port: u8, value: &Value) {
-        if self.tap.is_listening {
-            let (last, count) = self.tap.ports.entry((from, port)).or_default();
-            last.clone_from(value);
-            *count = count.saturating_add(1);
-        }
+        self.tap.hear(now, (from, port), value);
         self.other.sent(now, from, port, value);
     }
 
@@ -140,10 +186,10 @@ impl Desk {
         self.motors_rest && self.is_stopped()
     }
 
-    /// The program stops before its first reaction.
+    /// The program stops before its first instant.
     pub fn stop_first(&mut self) {
         self.is_attached = true;
-        self.tap.is_listening = true;
+        self.tap.listen(0);
         self.machine.pause();
     }
 
@@ -250,10 +296,10 @@ impl Desk {
             Order::Attach => self.is_attached = true,
             Order::Detach => self.detach(),
             Order::Look => {}
-            Order::Pause => match machine.status() {
-                Status::Running => machine.pause(),
-                Status::Ended { .. } => return Err(Common::Ended.into()),
-            },
+            Order::Pause => {
+                Self::must_run(machine)?;
+                machine.pause();
+            }
             Order::Continue => self.go_on(Machine::go_on)?,
             Order::Step(_, Some(_)) | Order::Hold(_) | Order::Release(_) => {
                 return Err(Refused::Cannot(words::no_threads()));
@@ -263,17 +309,21 @@ impl Desk {
             }
             Order::Step(Walk::Out, None) => self.go_on(|machine| machine.walk(Step::Instant))?,
             Order::Until(block) => {
+                Self::must_run(machine)?;
                 machine.add_point(Breakpoint {
                     is_once: true,
                     ..Breakpoint::before(block.clone())
                 })?;
-                machine.go_on();
+                if machine.stopped().is_some() {
+                    machine.go_on();
+                }
                 self.tell_again();
             }
             Order::Back(_) => return Err(Refused::Cannot(words::no_past())),
             // It is always there.
             Order::Present => {}
             Order::Break(point) => {
+                Self::must_run(machine)?;
                 let number = machine.add_point(point.clone())?;
                 return Ok(report::object().plain("number", number));
             }
@@ -302,18 +352,26 @@ impl Desk {
                 return Ok(report::value(&value));
             }
         }
-        self.tap.is_listening = true;
+        self.tap.listen(self.machine.now());
         Ok(report::object().plain("program", self.state()))
     }
 
     /// Lets a program go on that is stopped.
     fn go_on(&mut self, how: impl FnOnce(&mut Machine)) -> Result<(), Refused> {
+        Self::must_run(&self.machine)?;
         if !self.is_stopped() {
             return Err(Common::NotStopped.into());
         }
         how(&mut self.machine);
         self.tell_again();
         Ok(())
+    }
+
+    fn must_run(machine: &Machine) -> Result<(), Refused> {
+        match machine.status() {
+            Status::Running => Ok(()),
+            Status::Ended { .. } => Err(Common::Ended.into()),
+        }
     }
 
     fn detach(&mut self) {

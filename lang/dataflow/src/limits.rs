@@ -64,3 +64,9 @@ pub const BREAKPOINTS_MAX: usize = 100;
 pub const TOLD_BYTES: usize = 16 << 10;
 /// Characters of one text that it tells.
 pub const TOLD_CHARACTERS_MAX: usize = 1000;
+/// Ports whose last tokens a debugger keeps.
+pub const TAP_PORTS_MAX: usize = 1000;
+/// What such a token weighs at most; of a longer one the text is kept that is told.
+pub const TAP_CELLS_MAX: u32 = 64;
+/// For how many milliseconds after a look tokens are kept for the next one.
+pub const TAP_MS: u32 = 5000;

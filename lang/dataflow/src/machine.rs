@@ -150,9 +150,13 @@ impl Machine {
     /// stopped, its time stands still.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Status {
         let passed = now.saturating_sub(std::mem::replace(&mut self.asked, now));
-        if self.stopped().is_some() {
+        if !self.is_amid && self.ended.is_none() {
+            self.stops.pause_now();
+        }
+        if self.is_amid || self.stopped().is_some() {
             self.began = self.began.map(|began| began.saturating_add(passed));
-        } else if self.ended.is_none() {
+        }
+        if self.stopped().is_none() && self.ended.is_none() {
             let program = self.program.clone();
             let env = &mut Env {
                 program: &program,

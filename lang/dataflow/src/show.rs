@@ -10,7 +10,7 @@ mod words;
 mod tests;
 
 pub use picture::picture;
-pub use sentences::sentences;
+pub use sentences::{Line, lines, sentences};
 
 use crate::blocks::{Content, Property};
 use crate::project::{Block, Diagram};

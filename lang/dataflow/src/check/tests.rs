@@ -362,3 +362,37 @@ fn what_is_wrong_with_known_types_is_still_told() {
         "error: main: Text programming 'F': 'IO1', 1:1 Type mismatch",
     );
 }
+
+#[test]
+fn texts_that_wait_for_each_other_are_looked_at_all_the_same() {
+    // Both read and give n, and nobody else gives it a value.
+    let both = "A Sensor\nF Text programming {IO0=n = n + I0; {n, n}}\nG Text programming {IO0=n = n - I0}\nM Motors\nA.OUT > F.I0\nA.OUT > G.I0\nF.O0 > M.M3";
+    let found = told(both);
+    assert!(found.iter().any(|one| one.contains("list")), "{found:#?}");
+    let circle = "A Sensor\nF Text programming {IO0=x = y + I0}\nG Text programming {IO0=y = x + 1; 1 + 'a'}\nS Say\nA.OUT > F.I0\nA.OUT > G.I0\nG.O0 > S.DATA";
+    let found = told(circle);
+    assert!(
+        found.iter().any(|one| one.contains("mismatch")),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn a_chain_of_variables_is_followed_in_whatever_order_it_stands() {
+    let chain = "A Sensor\nF Text programming {IO0=e + 'x' + I0}\nS Say\nE Variable {variable=e = d + 1}\nD Variable {variable=d = c + 1}\nC Variable {variable=c = b + 1}\nB Variable {variable=b = a + 1}\nZ Variable {variable=a = 0}\nA.OUT > F.I0\nF.O0 > S.DATA";
+    let found = told(chain);
+    assert!(
+        found.iter().any(|one| one.contains("mismatch")),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn many_blocks_that_give_one_variable_cost_what_they_are() {
+    let mut text = String::new();
+    for number in 0..20_000 {
+        text += &format!("V{number} Variable {{variable=x = x + 1}}\n");
+    }
+    // Looking at each giver for each reader would be half a milliard looks in each pass.
+    assert_eq!(told(&text), Vec::<String>::new());
+}

@@ -3,6 +3,7 @@
 //! Owns the inference. What is not known fits everywhere: then the program says so when it runs.
 
 use super::Found;
+use super::givers::{Known, Variables};
 use super::words;
 use crate::blocks::Kind;
 use crate::lower::DATA;
@@ -10,10 +11,8 @@ use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Giv
 use lang_diagram::ports::Sort;
 use lang_expr::names::{is_own, own_name};
 use lang_expr::reserved::{SENSORS, Shape};
-use lang_expr::tree::{Id, Node as Part, Tree};
+use lang_expr::tree::Node as Part;
 use lang_expr::{Compat, Names, Source, Type, Value, Wanted};
-use std::collections::{HashMap, HashSet};
-use std::rc::Rc;
 
 /// How often types are handed on; a chain that is longer in the wrong order stays unknown at its end.
 const PASSES: usize = 12;
@@ -192,42 +191,24 @@ pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
         },
         names: Names::new(program.kit, Compat::Fixed),
         texts: program.formulas.iter().map(|_| Of::Any).collect(),
-        known: vec![Known::NotYet; program.formulas.len()],
-        givers: givers(program),
+        variables: Variables::of(program),
     };
     for pass in 0..PASSES {
-        let is_last = pass + 1 == PASSES;
-        let before = inference.types.outs.clone();
+        let before = (
+            inference.types.outs.clone(),
+            inference.variables.known.clone(),
+        );
         inference.learn(None);
         inference.pass();
-        if before == inference.types.outs && pass > 1 || is_last {
+        let is_same = before.0 == inference.types.outs && before.1 == inference.variables.known;
+        if is_same && inference.variables.is_forced {
             break;
         }
+        // Texts that wait for each other are looked at as they are, once everything else is known.
+        inference.variables.is_forced |= pass > 0 && is_same || pass + 2 >= PASSES;
     }
     inference.learn(Some(found));
     inference.types
-}
-
-/// Whether the types of the names are known that an expression reads.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Known {
-    /// Of all of them.
-    All,
-    /// Nothing comes to one of them, as far as it is known yet.
-    NotYet,
-    /// Of one of them nobody can know it.
-    Never,
-}
-
-impl Known {
-    /// What is known of two together.
-    fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Never, _) | (_, Self::Never) => Self::Never,
-            (Self::NotYet, _) | (_, Self::NotYet) => Self::NotYet,
-            (Self::All, Self::All) => Self::All,
-        }
-    }
 }
 
 struct Inference<'a> {
@@ -236,19 +217,8 @@ struct Inference<'a> {
     names: Names,
     /// What each expression gives.
     texts: Vec<Of>,
-    /// What was known for each expression when it was looked at last.
-    known: Vec<Known>,
-    /// Who gives each variable its values.
-    givers: HashMap<Rc<str>, Vec<Giver>>,
-}
-
-/// Who gives a variable its values.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Giver {
-    /// An expression, by its index in the program.
-    Text(usize),
-    /// Tokens at a block *Variable*, whatever they are.
-    Tokens,
+    /// Who gives variables their values, and who waits for them.
+    variables: Variables,
 }
 
 /// Whether an expression ends with an assignment, and so has no value.
@@ -258,78 +228,13 @@ fn assigns_last(source: &Source) -> bool {
     last.is_some_and(|last| matches!(tree.node(last), Part::Assign { .. }))
 }
 
-/// Variables of the project that its texts and its blocks give values.
-fn givers(program: &Program) -> HashMap<Rc<str>, Vec<Giver>> {
-    let mut all: HashMap<Rc<str>, Vec<Giver>> = HashMap::new();
-    for (index, text) in program.formulas.iter().enumerate() {
-        let source = Source::new(&text.text, text.wanted);
-        let tree = source.tree();
-        for part in &tree.nodes {
-            if let Part::Assign { target, .. } = part
-                && let Some(name) = assigned(tree, *target)
-            {
-                let givers = all.entry(name.clone()).or_default();
-                if givers.last() != Some(&Giver::Text(index)) {
-                    givers.push(Giver::Text(index));
-                }
-            }
-        }
-    }
-    for node in &program.nodes {
-        if let Op::Flow(Flow::Variable { names, run: None }) = &node.op {
-            for name in names {
-                all.entry(name.clone()).or_default().push(Giver::Tokens);
-            }
-        }
-    }
-    all
-}
-
-/// The variable that an assignment to `target` changes, wholly or in part.
-fn assigned(tree: &Tree, target: Id) -> Option<&Rc<str>> {
-    let mut at = target;
-    while let Part::Index { table, .. } = tree.node(at) {
-        at = *table;
-    }
-    let Part::Name(name) = tree.node(at) else {
-        return None;
-    };
-    Some(name)
-}
-
-/// The names whose former values a text reads: all but those that it assigns before.
-fn reads(tree: &Tree) -> Vec<Rc<str>> {
-    let mut made: HashSet<Rc<str>> = HashSet::new();
-    let mut read = Vec::new();
-    for statement in tree.statements() {
-        let mut open = vec![statement];
-        let mut makes = None;
-        if let Part::Assign { target, value } = tree.node(statement)
-            && let Part::Name(name) = tree.node(*target)
-        {
-            open = vec![*value];
-            makes = Some(name.clone());
-        }
-        while let Some(id) = open.pop() {
-            tree.children(id, |child| open.push(child));
-            if let Part::Name(name) = tree.node(id)
-                && !made.contains(name)
-            {
-                read.push(name.clone());
-            }
-        }
-        made.extend(makes);
-    }
-    read
-}
-
 impl Inference<'_> {
     /// Looks at each expression with what is known of its names.
     fn learn(&mut self, mut found: Option<&mut Found>) {
         for index in 0..self.program.formulas.len() {
             let text = &self.program.formulas[index];
             let known = self.bind(index);
-            self.known[index] = known;
+            self.variables.note(index, known);
             let rename = |name: &str| text.own.contains(&name).then(|| own_name(name, text.node));
             let mut source = Source::with_own_names(&text.text, text.wanted, &rename);
             let outcome = match (known, source.tree().root) {
@@ -375,7 +280,7 @@ impl Inference<'_> {
             let slot = self.names.find(name);
             let kind = slot.and_then(|slot| self.names.kind(slot));
             let is_variable = matches!(kind, None | Some(lang_expr::Kind::Variable));
-            if is_variable && !is_own(name) && !self.givers.contains_key(name) {
+            if is_variable && !is_own(name) && !self.variables.are_given(name) {
                 let place = self
                     .program
                     .property_place(text.node, text.property, Some(*at));
@@ -411,27 +316,9 @@ impl Inference<'_> {
                 _ => Known::Never,
             });
         }
-        reads(source.tree())
-            .iter()
-            .filter(|name| !text.own.contains(&&***name))
-            .fold(known, |known, name| known.and(self.variable(name, index)))
-    }
-
-    /// Whether the type of a variable is known that a text reads. What others give it must be understood first: if it is
-    /// read before, it is taken for any number, and stays that.
-    fn variable(&self, name: &str, reader: usize) -> Known {
-        let slot = self.names.find(name);
-        if slot.is_some_and(|slot| self.names.type_of(slot) != Type::Any) {
-            return Known::All;
-        }
-        let givers = self.givers.get(name).map_or(&[][..], Vec::as_slice);
-        givers.iter().fold(Known::All, |known, giver| {
-            known.and(match giver {
-                Giver::Text(index) if *index == reader => Known::All,
-                // Understood, and still without a type: then the reader is told so.
-                Giver::Text(index) => self.known[*index],
-                Giver::Tokens => Known::Never,
-            })
+        self.variables.and(index, known, |name| {
+            let slot = self.names.find(name);
+            slot.is_some_and(|slot| self.names.type_of(slot) != Type::Any)
         })
     }
 

@@ -2,6 +2,7 @@
 //!
 //! Owns the form, which `docs/protocol.md` describes. Knows no orders.
 
+use super::Seen;
 use crate::limits::{TOLD_BYTES, TOLD_CHARACTERS_MAX};
 use crate::machine::Machine;
 use crate::machine::stops::{Reason, Stop};
@@ -13,8 +14,8 @@ use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem};
 use std::collections::BTreeMap;
 
-/// Ports with their last tokens, and how many there were.
-pub(super) type Ports = BTreeMap<(NodeId, u8), (Value, u32)>;
+/// Ports with what they gave.
+pub(super) type Ports = BTreeMap<(NodeId, u8), Seen>;
 
 /// An object without members.
 pub(super) fn object() -> Object {
@@ -22,7 +23,12 @@ pub(super) fn object() -> Object {
 }
 
 /// An object with a list that takes no more than about [`TOLD_BYTES`], and how much of it is left out, if anything is.
-fn listed(told: Object, name: &str, items: impl Iterator<Item = String>) -> Object {
+fn listed<T>(
+    told: Object,
+    name: &str,
+    items: impl Iterator<Item = T>,
+    told_of: impl Fn(T) -> String,
+) -> Object {
     let (mut bytes, mut left_out) = (0, 0);
     let mut list = Vec::new();
     for item in items {
@@ -30,8 +36,9 @@ fn listed(told: Object, name: &str, items: impl Iterator<Item = String>) -> Obje
             left_out += 1;
             continue;
         }
-        bytes += item.len();
-        list.push(item);
+        let text = told_of(item);
+        bytes += text.len();
+        list.push(text);
     }
     let told = told.list(name, list);
     match left_out {
@@ -63,41 +70,41 @@ pub(super) fn state(
         told = told.plain("stop", stopped(machine, stop, locale));
     }
     told = told.list("threads", []);
-    let variables = machine.variables().map(|(name, held)| {
+    told = listed(told, "variables", machine.variables(), |(name, held)| {
         let told = object().text("name", name).text("type", kind(held));
         told.text("value", &held.brief()).done()
     });
-    told = listed(told, "variables", variables);
     let program = machine.program();
-    let ports = ports.iter().map(|(&(node, port), (last, count))| {
+    told = listed(told, "ports", ports.iter(), |(&(node, port), seen)| {
         let told = place(program, Target { node, port });
-        let told = told.text("type", kind(last)).text("value", &last.brief());
-        told.plain("count", count).done()
+        let told = told
+            .text("type", seen.kind)
+            .text("value", &seen.last.brief());
+        told.plain("count", seen.count).done()
     });
-    told = listed(told, "ports", ports);
-    listed(told, "waiting", waiting(machine).into_iter()).done()
+    listed(told, "waiting", waiting(machine), |(at, count, lost)| {
+        let told = place(program, at).plain("count", count);
+        told.plain("lost", lost).done()
+    })
+    .done()
 }
 
-/// Ports at which tokens wait or were lost.
-fn waiting(machine: &Machine) -> Vec<String> {
-    let lost: BTreeMap<(NodeId, u8), u32> = machine
-        .dropped()
+/// Ports at which tokens wait or were lost, and how many.
+fn waiting(machine: &Machine) -> impl Iterator<Item = (Target, usize, u32)> {
+    let lost = machine.dropped();
+    let lost: BTreeMap<(NodeId, u8), u32> = lost
         .map(|(at, count)| ((at.node, at.port), count))
         .collect();
-    let program = machine.program();
-    let mut told = Vec::new();
-    for (node, block) in (0..).zip(&program.nodes) {
-        for port in 0..u8::try_from(block.queues.len()).unwrap_or(u8::MAX) {
-            let at = Target { node, port };
-            let lost = lost.get(&(node, port)).copied().unwrap_or_default();
-            let count = machine.waiting_at(at);
-            if count > 0 || lost > 0 {
-                let one = place(program, at).plain("count", count);
-                told.push(one.plain("lost", lost).done());
-            }
-        }
-    }
-    told
+    let nodes = (0..).zip(&machine.program().nodes);
+    let ports = nodes.flat_map(|(node, block)| {
+        let ports = u8::try_from(block.row.ports.len()).unwrap_or(u8::MAX);
+        (0..ports).map(move |port| Target { node, port })
+    });
+    ports.filter_map(move |at| {
+        let lost = lost.get(&(at.node, at.port)).copied().unwrap_or_default();
+        let count = machine.waiting_at(at);
+        (count > 0 || lost > 0).then_some((at, count, lost))
+    })
 }
 
 /// A port: its diagram, its block by caption, id and type, and its name.
@@ -124,9 +131,12 @@ fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
             .plain("number", number)
             .text("text", &problems(found, locale)),
     };
-    let at = place(machine.program(), stop.at)
-        .text("type", kind(&stop.token))
-        .text("value", &stop.token.brief());
+    let Some((to, token)) = &stop.next else {
+        return told.done();
+    };
+    let at = place(machine.program(), *to)
+        .text("type", kind(token))
+        .text("value", &token.brief());
     told.plain("at", at.done()).done()
 }
 
@@ -146,7 +156,7 @@ pub(super) fn value(value: &Value) -> Object {
 /// Breakpoints after a number.
 pub(super) fn points(machine: &Machine, after: u32) -> Object {
     let points = machine.points().filter(|(number, ..)| *number > after);
-    let told = points.map(|(number, point, hits)| {
+    listed(object(), "breakpoints", points, |(number, point, hits)| {
         let told = object().plain("number", number);
         let told = match &point.at {
             Spot::Block(block) => told.text("block", block),
@@ -159,12 +169,11 @@ pub(super) fn points(machine: &Machine, after: u32) -> Object {
             .plain("disabled", point.is_disabled)
             .plain("hits", hits)
             .done()
-    });
-    listed(object(), "breakpoints", told)
+    })
 }
 
 /// The word of a value's type.
-fn kind(value: &Value) -> &'static str {
+pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Nil | Value::Unset => "nothing",
         Value::Bool(_) => "bool",

@@ -152,6 +152,10 @@ fn a_step_out_goes_to_the_next_instant() {
     runs(&mut desk, &mut robot, 0, 50);
     assert!(desk.is_stopped());
     assert_eq!((desk.machine().now(), robot.told.len()), (0, 0));
+    told(&mut desk, "step");
+    runs(&mut desk, &mut robot, 60, 60);
+    // What starts the program are tokens too.
+    assert!(told(&mut desk, "look").contains("\"ms\":0"));
     told(&mut desk, "step out");
     runs(&mut desk, &mut robot, 60, 100);
     let state = told(&mut desk, "look");
@@ -208,7 +212,12 @@ fn a_condition_that_cannot_be_computed_stops_and_says_so() {
         },
     );
     told(&mut desk, "attach");
-    told(&mut desk, "break qrm:/main/M\nif dta > 15");
+    let unknown = told(&mut desk, "break qrm:/main/M\nif dta > 15");
+    assert!(unknown.contains("\"done\":false"), "{unknown}");
+    let assigns = told(&mut desk, "break qrm:/main/M\nif n = 15");
+    assert!(assigns.contains("\"done\":false"), "{assigns}");
+    // That a rest wants whole numbers is known only when the token is there.
+    told(&mut desk, "break qrm:/main/M\nif data % 2 == 1");
     runs(&mut desk, &mut robot, 0, 40);
     let state = told(&mut desk, "look");
     assert!(
@@ -347,6 +356,232 @@ fn a_program_that_is_stopped_is_changed_where_it_stands() {
     assert!(desk.is_stopped());
     desk.patch(&version("A Sensor\nN Motors\nA.OUT > N.M4"), &mut robot)
         .expect("a change");
+    assert!(desk.is_stopped());
+    assert!(told(&mut desk, "continue").contains("\"done\":true"));
     runs(&mut desk, &mut robot, 70, 200);
+    assert!(
+        robot.told.iter().any(|told| told == "power M4 5"),
+        "{:?}",
+        robot.told
+    );
+}
+
+/// Ten numbers, one each 10 ms.
+const TICKS: &str = "L Loop {start_border=1 | end_border=10 | time=10}\nM Motors\nL.OUT > M.M3";
+
+#[test]
+fn time_stands_still_however_often_the_program_is_stopped() {
+    let (mut desk, mut robot) = (desk(TICKS), Robot::default());
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M");
+    let mut stops = 0;
+    // The caller's clock goes on, and the program is looked at for 70 ms at each stop.
+    for now in (0..2000).step_by(10) {
+        desk.step(now, &mut robot, &mut Deaf);
+        if desk.is_stopped() && now % 70 == 0 {
+            stops += 1;
+            assert_eq!(desk.machine().now(), 10 * stops);
+            told(&mut desk, "continue");
+        }
+    }
+    assert_eq!(stops, 10);
+    let wanted: Vec<String> = (1..=10).map(|n| format!("power M3 {n}")).collect();
+    assert_eq!(robot.told[..10], wanted);
+}
+
+#[test]
+fn a_program_that_waits_is_paused_too() {
+    let wait = "G Motors {M3Power=50}\nW Wait and send {time=60000}\nG.CF_OUT > W.CF_IN";
+    let (mut desk, mut robot) = (desk(wait), Robot::default());
+    told(&mut desk, "attach");
+    runs(&mut desk, &mut robot, 0, 100);
+    told(&mut desk, "pause");
+    runs(&mut desk, &mut robot, 110, 200);
+    assert!(desk.is_at_rest());
+    let state = told(&mut desk, "look");
+    assert!(state.contains("\"stop\":{\"reason\":\"pause\"}"), "{state}");
+    assert_eq!(desk.machine().now(), 100);
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 210, 230);
+    assert_eq!(desk.machine().now(), 130);
+}
+
+#[test]
+fn a_debugger_that_never_stops_it_changes_nothing() {
+    let run = |orders: &[&str]| {
+        let (mut desk, mut robot) = (desk(SLOW), Robot::default());
+        for order in orders {
+            assert!(told(&mut desk, order).contains("\"done\":true"), "{order}");
+        }
+        for now in (0..400).step_by(10) {
+            robot.a1 = (now as i32 * 7) % 41;
+            desk.step(now, &mut robot, &mut Deaf);
+            if !orders.is_empty() {
+                told(&mut desk, "look");
+                told(&mut desk, "evaluate n + k * 2");
+            }
+        }
+        robot.told
+    };
+    let watched = run(&[
+        "attach",
+        "break qrm:/main/M\nif data > 1000",
+        "break qrm:/main/F\nif data == 0 - 1 or n > 1000",
+    ]);
+    assert_eq!(watched, run(&[]));
+}
+
+#[test]
+fn an_expression_of_a_person_narrows_no_type_of_the_program() {
+    let text = "A Sensor\nF Text programming {IO0=l = {}; l[0] = I0; x = l[0]; x}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+    let (mut desk, mut robot) = (
+        desk(text),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    for order in ["evaluate x + 1", "evaluate l[0] + 1", "evaluate x == 5"] {
+        told(&mut desk, order);
+    }
+    runs(&mut desk, &mut robot, 50, 100);
+    assert_eq!(
+        desk.machine().errors().len(),
+        0,
+        "{:?}",
+        desk.machine().errors()
+    );
+    assert_eq!(last(&robot), "power M3 5");
+}
+
+#[test]
+fn a_version_that_gives_a_variable_another_type_is_refused() {
+    let (mut desk, mut robot) = (
+        desk(SLOW),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    let other = SLOW
+        .replace("n = 0; k = 2", "n = 0; k = 'two'")
+        .replace("I0 * k", "I0");
+    let refused = desk.patch(&version(&other), &mut robot);
+    assert!(
+        matches!(refused, Err(NoVersion::Mistakes(_))),
+        "{refused:?}"
+    );
+    // A list keeps its type, whatever its first item is.
+    let list =
+        "A Sensor\nF Text programming {IO0=h[1] = I0; h[1]}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+    let (mut desk, mut robot) = (
+        super::tests::desk(list),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    desk.patch(&version(list), &mut robot)
+        .expect("the same again");
+    runs(&mut desk, &mut robot, 50, 100);
+    assert_eq!(
+        desk.machine().errors().len(),
+        0,
+        "{:?}",
+        desk.machine().errors()
+    );
+}
+
+#[test]
+fn a_number_that_a_text_cannot_take_is_not_set() {
+    let text = SLOW.replace("I0 * k", "I0 % k");
+    let (mut desk, mut robot) = (
+        desk(&text),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    runs(&mut desk, &mut robot, 0, 40);
+    assert!(told(&mut desk, "set k=0.5").contains("\"done\":false"));
+    assert!(told(&mut desk, "set k=3").contains("\"done\":true"));
+    runs(&mut desk, &mut robot, 50, 60);
+    assert_eq!(last(&robot), "power M3 2");
+}
+
+#[test]
+fn a_token_for_a_port_that_nothing_leads_to_any_more_is_lost() {
+    let two = "A Sensor\nF Text programming {IO0=I0 | IO1=I1 + 1}\nM Motors\nA.OUT > F.I0\nA.OUT > F.I1\nF.O0 > M.M3\nF.O1 > M.M4";
+    let (mut desk, mut robot) = (
+        desk(two),
+        Robot {
+            a1: 5,
+            ..Robot::default()
+        },
+    );
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/F");
+    runs(&mut desk, &mut robot, 0, 20);
+    let state = told(&mut desk, "look");
+    assert!(state.contains("\"port\":\"I1\""), "{state}");
+    assert!(state.contains("\"waiting\":[{"), "{state}");
+    let one = "A Sensor\nF Text programming {IO0=I0}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+    let patched = desk.patch(&version(one), &mut robot).expect("a change");
+    assert_eq!(patched.lost, 1);
+    assert!(desk.is_stopped());
+    told(&mut desk, "clear all");
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 30, 60);
+    assert!(
+        robot.told.iter().all(|told| told == "power M3 5"),
+        "{:?}",
+        robot.told
+    );
     assert!(!robot.told.is_empty());
+}
+
+#[test]
+fn each_call_of_a_subprogram_keeps_its_own_and_a_random_that_repeats_no_more_ends() {
+    let inner =
+        "I Input port\nS Flow replacer {time=60}\nO Output port\nI.OUT > S.DATA\nS.OUT > O.DATA";
+    let outer = "R Random generator {fromNumber=3 | toNumber=3 | repeatedly=true | time=20}\nC User block of inner\nD User block of inner\nM Motors\nR.OUT > C.I0\nR.OUT > D.I0\nC.O0 > M.M3\nD.O0 > M.M4";
+    let whole = |outer: &str| {
+        project(vec![
+            diagram("main", DiagramKind::Main, outer),
+            diagram("inner", DiagramKind::Subprogram, inner),
+        ])
+    };
+    let checked = check(&whole(outer));
+    assert!(!checked.has_errors(), "{:?}", checked.problems);
+    let mut desk = Desk::new(Machine::new(Rc::new(checked.program)), Locale::English);
+    let mut robot = Robot::default();
+    told(&mut desk, "attach");
+    // One id, a block in each call: it stops in both.
+    told(&mut desk, "break qrm:/inner/S");
+    runs(&mut desk, &mut robot, 0, 20);
+    assert!(desk.is_stopped());
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 30, 30);
+    assert!(desk.is_stopped(), "in the other call");
+    told(&mut desk, "clear all");
+    told(&mut desk, "continue");
+    let once = outer.replace("repeatedly=true", "repeatedly=false");
+    let once = Version::of(&whole(&once)).expect("a good program");
+    let patched = desk.patch(&once, &mut robot).expect("a change");
+    assert_eq!(patched.to_string(), "10 blocks kept, 0 new, 0 gone");
+    runs(&mut desk, &mut robot, 40, 200);
+    assert_eq!(
+        robot
+            .told
+            .iter()
+            .filter(|told| *told == "power M4 3")
+            .count(),
+        1
+    );
+    assert!(matches!(desk.machine().status(), Status::Ended { .. }));
+    assert!(told(&mut desk, "continue").contains("has ended"));
+    assert!(told(&mut desk, "until qrm:/main/M").contains("has ended"));
 }

@@ -65,14 +65,20 @@ impl Machine {
     /// Gives a variable of the program the value of an expression.
     ///
     /// # Errors
-    /// The program has no such variable, or what is wrong with the expression; nothing has changed then.
+    /// The program has no such variable, what is wrong with the expression, or with a text of the program that could not
+    /// be computed any more; nothing has changed then.
     pub fn assign_aside(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
         let names: Vec<&str> = self.variables().map(|(name, _)| name).collect();
         if !names.contains(&name) {
             return Err(vec![Problem::error(words::no_variable(name, &names))]);
         }
         let value = self.evaluate_aside(text)?;
-        let assigned = self.formulas.assign(name, value);
-        assigned.map_err(|words| vec![Problem::error(words)])
+        let mut formulas = self.formulas.clone();
+        let assigned = formulas.assign(name, value);
+        assigned.map_err(|words| vec![Problem::error(words)])?;
+        // A number with a fraction may be one too many for a text that needs a whole one.
+        formulas.check_all(&self.program, &self.states)?;
+        self.formulas = formulas;
+        Ok(())
     }
 }

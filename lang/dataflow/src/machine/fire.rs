@@ -322,7 +322,9 @@ impl Machine {
             Flow::Loop { time_ms, .. } => self.count_on(id, due, *time_ms, env),
             Flow::Random { bounds, every_ms } => {
                 self.random(id, *bounds, env)?;
-                self.repeat(id, due, round_up(every_ms.unwrap_or(STEP_MS)));
+                if let Some(every_ms) = every_ms {
+                    self.repeat(id, due, round_up(*every_ms));
+                }
                 Ok(())
             }
             Flow::Wait(_) => {

@@ -12,6 +12,7 @@ use lang_expr::names::{is_own, own_name};
 use lang_expr::tree::Node as Part;
 use lang_expr::{Names, Outside, Slot, Source, Store, Type, Value, Wanted};
 use lang_text::problem::{Problem, Words};
+use std::rc::Rc;
 
 /// All expressions with their names and values.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub(super) struct Formulas {
     of_node: Vec<(Formula, u32)>,
     /// Whether there was no room for a name.
     is_full: bool,
+    /// Names for conditions, so that these narrow no type of the program, and for which state of its types they are.
+    aside: Option<Box<(u32, Names)>>,
 }
 
 /// Why a text has no value.
@@ -42,14 +45,31 @@ pub(super) enum Reason {
 
 impl Formulas {
     pub fn new(program: &Program) -> Self {
+        let names = Names::new(program.kit, COMPAT).strict();
+        Self::with(program, names, Store::default())
+    }
+
+    /// Those of a new version of the program: variables keep values and types, and own names have none.
+    pub fn after(program: &Program, old: &Self) -> Self {
+        let (names, mut store) = (old.names.clone(), old.store.clone());
+        for (slot, name, _) in names.variables() {
+            if is_own(name) {
+                store.remove(slot);
+            }
+        }
+        Self::with(program, names, store)
+    }
+
+    fn with(program: &Program, names: Names, store: Store) -> Self {
         let mut formulas = Self {
             sources: Vec::with_capacity(program.formulas.len()),
             reads: Vec::with_capacity(program.formulas.len()),
-            names: Names::new(program.kit, COMPAT).strict(),
-            store: Store::default(),
+            names,
+            store,
             own: vec![None; program.nodes.len()],
             of_node: vec![(0, 0); program.nodes.len()],
             is_full: false,
+            aside: None,
         };
         for (index, text) in (0..).zip(&program.formulas) {
             formulas.add(index, text);
@@ -181,7 +201,8 @@ impl Formulas {
         lang_expr::analyse(source, &mut self.names).map_err(Reason::Problems)
     }
 
-    /// The value of a text that came as a token; nothing if it would change variables.
+    /// The value of a text that came as a token, or from a person; nothing if it would change variables. No type of the
+    /// program is narrowed by it.
     pub fn evaluate_text(
         &mut self,
         text: &str,
@@ -189,44 +210,99 @@ impl Formulas {
         outside: &mut dyn Outside,
     ) -> Result<Option<Value>, Vec<Problem>> {
         let mut source = Source::new(text, wanted);
-        let assigns = |part: &Part| matches!(part, Part::Assign { .. });
         let is_new = |name: &str| self.names.find(name).is_none();
-        if source.tree().nodes.iter().any(assigns) || source.names().any(is_new) {
+        if assigns(&source) || source.names().any(is_new) {
             return Ok(None);
         }
-        lang_expr::analyse(&mut source, &mut self.names)?;
-        lang_expr::evaluate(&source, &self.names, &mut self.store, outside).map(Some)
+        let mut names = self.names.clone();
+        lang_expr::analyse(&mut source, &mut names)?;
+        lang_expr::evaluate(&source, &names, &mut self.store, outside).map(Some)
     }
 
-    /// Whether a condition holds for a token, which it sees as `data`. It reads variables, and changes nothing.
+    /// Whether a text can be a condition: it assigns nothing, and its names are those of the program and `data`.
+    pub fn check_condition(&self, text: &str) -> Result<(), Vec<Problem>> {
+        let mut source = Source::with_own_names(text, Wanted::Bool, &condition_name);
+        let is_read = |name: &str| {
+            self.sources
+                .iter()
+                .any(|one| one.names().any(|one| one == name))
+        };
+        let is_known =
+            |name: &str| is_own(name) || self.names.find(name).is_some() || is_read(name);
+        if assigns(&source) || !source.names().all(is_known) {
+            return Err(vec![Problem::error(words::only_known_variables())]);
+        }
+        // The grammar alone: types come with values.
+        match source.tree().root {
+            Some(_) => Ok(()),
+            None => lang_expr::analyse(&mut source, &mut self.names.clone()),
+        }
+    }
+
+    /// Whether a condition holds for a token, which it sees as `data`. It does not while one of its variables has no value.
     pub fn holds(
         &mut self,
         text: &str,
         token: &Value,
         outside: &mut dyn Outside,
     ) -> Result<bool, Vec<Problem>> {
-        let [data] = DATA else { return Ok(false) };
-        let own = own_name(data, NodeId::MAX);
-        let rename = |name: &str| (name == *data).then(|| own.clone());
-        let mut source = Source::with_own_names(text, Wanted::Bool, &rename);
-        let assigns = |part: &Part| matches!(part, Part::Assign { .. });
-        let is_new = |name: &str| name != &*own && self.names.find(name).is_none();
-        if source.tree().nodes.iter().any(assigns) || source.names().any(is_new) {
-            return Err(vec![Problem::error(words::only_known_variables())]);
+        let mut source = Source::with_own_names(text, Wanted::Bool, &condition_name);
+        let is_there = |name: &str| is_own(name) || self.names.find(name).is_some();
+        if !source.names().all(is_there) {
+            return Ok(false);
         }
-        if source.names().any(|name| *name == *own)
-            && let Some(slot) = self.names.slot(&own)
-        {
-            if super::values::is_unit(token) {
-                return Err(vec![Problem::error(words::unit())]);
-            }
-            self.names.retype(slot, token);
+        let epoch = self.names.epoch();
+        let is_new = self.aside.as_ref().is_none_or(|aside| aside.0 != epoch);
+        if is_new {
+            self.aside = Some(Box::new((epoch, self.names.clone())));
+        }
+        let Some((_, names)) = self.aside.as_deref_mut() else {
+            return Ok(false);
+        };
+        let own = source
+            .names()
+            .find(|name| is_own(name))
+            .map(Rc::<str>::from);
+        if own.is_some() && super::values::is_unit(token) {
+            return Err(vec![Problem::error(words::unit())]);
+        }
+        let slot = own.and_then(|own| names.slot(&own));
+        if let Some(slot) = slot {
+            names.retype(slot, token);
             if self.store.set(slot, token.clone()).is_err() {
                 return Err(vec![Problem::error(words::too_many_variables())]);
             }
         }
-        lang_expr::analyse(&mut source, &mut self.names)?;
-        lang_expr::evaluate_bool(&source, &self.names, &mut self.store, outside)
+        let holds = lang_expr::analyse(&mut source, names)
+            .and_then(|()| lang_expr::evaluate_bool(&source, names, &mut self.store, outside));
+        if let Some(slot) = slot {
+            self.store.remove(slot);
+        }
+        holds
+    }
+
+    /// Whether all texts whose own names have values can be understood with the types that variables have.
+    ///
+    /// # Errors
+    /// The mistakes of the first one that cannot, with their places.
+    pub fn check_all(&self, program: &Program, states: &[State]) -> Result<(), Vec<Problem>> {
+        let mut names = self.names.clone();
+        for ((source, reads), text) in self.sources.iter().zip(&self.reads).zip(&program.formulas) {
+            let state = &states[text.node as usize];
+            if reads & !(state.bound & !state.units) != 0 {
+                continue;
+            }
+            let mut source = source.clone();
+            source.reread();
+            if let Err(problems) = lang_expr::analyse(&mut source, &mut names) {
+                let placed = problems.into_iter().map(|problem| Problem {
+                    place: program.property_place(text.node, text.property, problem.place.position),
+                    ..problem
+                });
+                return Err(placed.collect());
+            }
+        }
+        Ok(())
     }
 
     /// Gives a variable of the project a value.
@@ -256,6 +332,17 @@ impl Formulas {
         all.filter(|(_, name, _)| !is_own(name))
             .filter_map(|(slot, name, _)| Some((name, self.store.get(slot)?)))
     }
+}
+
+/// Whether a text assigns something.
+fn assigns(source: &Source) -> bool {
+    let nodes = &source.tree().nodes;
+    nodes.iter().any(|part| matches!(part, Part::Assign { .. }))
+}
+
+/// The name that stands for `data` in a condition.
+fn condition_name(name: &str) -> Option<Rc<str>> {
+    DATA.contains(&name).then(|| own_name(name, NodeId::MAX))
 }
 
 /// Whether a value has a type; what is not known has every type.

@@ -1,16 +1,17 @@
 //! A new version of a program takes the place of the one that runs, which goes on where it is.
 //!
 //! Owns what is kept and what is not. Blocks are the same if they are of the same type, with the same id, in the same call:
-//! they keep their windows, counts, timers, readings and waiting tokens. Variables keep their values. A property that the
+//! they keep their windows, counts, timers and waiting tokens. Variables keep their values and types. A property that the
 //! new version changes counts from now on; one that it leaves alone keeps what a token has made of it. Everything is checked
 //! before anything changes, and no device is told anything.
 
+use super::formulas::Formulas;
 use super::state::{Memory, State};
 use super::trace::Deaf;
 use super::{Env, Machine, words};
 use crate::check::check;
 use crate::limits;
-use crate::program::{Instance, Node, NodeId, Op, Program, Queue, Target};
+use crate::program::{Flow, Instance, Node, NodeId, Op, Program, Queue, Target};
 use crate::project::Project;
 use lang_diagram::brick::Brick;
 use lang_expr::Value;
@@ -150,9 +151,11 @@ impl Machine {
         let mut patched = next.take_blocks(self, &kept);
         next.take_variables(self, &kept)
             .map_err(|problem| Refused::Mistakes(vec![problem]))?;
+        let sound = next.formulas.check_all(&version.program, &next.states);
+        sound.map_err(Refused::Mistakes)?;
         next.take_stops(self);
-        next.move_stop(|target| kept.target(target));
         next.take_instant(self);
+        patched.lost += next.take_deliveries(self, &kept);
         next.start_new(&kept);
         if let Some(problem) = next.missing_sensor(brick) {
             return Err(Refused::Mistakes(vec![problem]));
@@ -188,7 +191,10 @@ impl Machine {
             let mut memory = state.memory.clone();
             memory.follow(&State::new(was).memory, &State::new(node).memory);
             self.states[id as usize].memory = memory;
-            self.states[id as usize].timer = state.timer;
+            // One that repeats no more has nothing to wait for.
+            if !matches!(&node.op, Op::Flow(Flow::Random { every_ms: None, .. })) {
+                self.states[id as usize].timer = state.timer;
+            }
             for (port, queue) in old.queues[before as usize].iter().enumerate() {
                 self.take_queue((id, node), port, queue);
             }
@@ -197,6 +203,7 @@ impl Machine {
         let timers = old.timers.iter();
         self.timers = timers
             .filter_map(|(&key, &id)| Some((key, kept.new_of[id as usize]?)))
+            .filter(|&(key, id)| self.states[id as usize].timer == Some(key))
             .collect();
         let subscribed = old.subscribed.iter();
         self.subscribed = subscribed
@@ -208,12 +215,25 @@ impl Machine {
             .filter_map(|(target, count)| Some((kept.target(target)?, count)))
             .map(|(target, count)| ((target.node, target.port), count))
             .collect();
-        // Tokens are on their way only within an instant that is stopped, and to what an earlier version has started.
-        let started = old.deliveries.iter();
-        self.deliveries = started
-            .filter_map(|(target, value)| Some((kept.target(*target)?, value.clone())))
-            .collect();
         patched
+    }
+
+    /// Tokens that are on their way: within an instant that is stopped, and to what an earlier version has started. Those
+    /// for ports that nothing leads to any more are lost.
+    fn take_deliveries(&mut self, old: &Self, kept: &Kept) -> usize {
+        let program = self.program.clone();
+        let moved = |(target, value): &(Target, Value)| {
+            let target = kept.target(*target)?;
+            let node = program.node(target.node);
+            let instance = &program.instances[node.instance as usize];
+            let is_open = node.is_linked(target.port) || instance.starts.contains(&target);
+            is_open.then(|| (target, value.clone()))
+        };
+        let next = old.deliveries.front();
+        let is_next_there = next.is_some_and(|next| moved(next).is_some());
+        self.deliveries = old.deliveries.iter().filter_map(moved).collect();
+        self.move_stop(is_next_there);
+        old.deliveries.len() - self.deliveries.len()
     }
 
     fn queued_tokens(&self) -> usize {
@@ -235,14 +255,11 @@ impl Machine {
         }
     }
 
-    /// Values of variables, and of the own names of blocks that both versions have.
+    /// Values and types of variables, and values of the own names of blocks that both versions have.
     fn take_variables(&mut self, old: &Self, kept: &Kept) -> Result<(), Problem> {
+        self.formulas = Formulas::after(&self.program, &old.formulas);
         if self.formulas.has_too_many_names() {
             return Err(Problem::error(words::too_many_variables()));
-        }
-        for (name, value) in old.formulas.variables() {
-            let assigned = self.formulas.assign(name, value.clone());
-            assigned.map_err(Problem::error)?;
         }
         for (id, before) in (0..).zip(&kept.old_of) {
             let Some(before) = *before else {
@@ -304,16 +321,17 @@ impl Machine {
     }
 }
 
+/// One property: what a token has made of it stays if no version has changed it.
+fn one<T: Clone + PartialEq>(now: &mut T, before: &T, after: &T) {
+    if before != after {
+        now.clone_from(after);
+    }
+}
+
 impl Memory {
     /// Follows the block into another version. `before` and `after` are what it remembers at its start in either: where
     /// the two differ, the version has changed a property.
     fn follow(&mut self, before: &Self, after: &Self) {
-        /// One property.
-        fn one<T: Clone + PartialEq>(now: &mut T, before: &T, after: &T) {
-            if before != after {
-                now.clone_from(after);
-            }
-        }
         // A property may have made another kind of block of it, as a text that is computed now.
         if discriminant(self) != discriminant(after) {
             self.clone_from(after);
@@ -324,7 +342,11 @@ impl Memory {
                 Self::Count { bounds, .. },
                 Self::Count { bounds: before, .. },
                 Self::Count { bounds: after, .. },
-            ) => one(bounds, before, after),
+            ) => {
+                for (now, (before, after)) in bounds.iter_mut().zip(before.iter().zip(after)) {
+                    one(now, before, after);
+                }
+            }
             (
                 Self::Hold { ms, .. },
                 Self::Hold { ms: before, .. },

@@ -6,7 +6,7 @@
 use super::aside::Nobody;
 use super::{Machine, words};
 use crate::limits;
-use crate::program::{Op, Target};
+use crate::program::{Flow, Op, Target};
 use lang_diagram::debug::{Breakpoint, Spot};
 use lang_expr::Value;
 use lang_text::problem::{Problem, Words};
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Why a program has stopped.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Reason {
-    /// Somebody has asked for it.
+    /// Somebody has asked for it: between two instants.
     Pause,
     /// A step is done.
     Step,
@@ -30,10 +30,8 @@ pub enum Reason {
 pub struct Stop {
     /// Why.
     pub reason: Reason,
-    /// The port that the token is about to reach.
-    pub at: Target,
-    /// The token.
-    pub token: Value,
+    /// The token that comes next, and the port that it is about to reach; none: the program is between two instants.
+    pub next: Option<(Target, Value)>,
 }
 
 /// How far a step goes.
@@ -52,6 +50,10 @@ pub enum NoPoint {
     NoSuchBlock,
     /// There are [`limits::BREAKPOINTS_MAX`].
     TooMany,
+    /// Its condition is longer than such texts may be.
+    TooLong,
+    /// Its condition can never be computed.
+    Condition(Vec<Problem>),
     /// What it is asked for does not exist here.
     Cannot(Words),
 }
@@ -89,7 +91,22 @@ pub(super) struct Stops {
 impl Stops {
     /// Whether each token has to be looked at.
     pub(super) fn is_armed(&self) -> bool {
-        self.may_pass || self.wish != Wish::None || !self.points.is_empty()
+        let steps = match self.wish {
+            Wish::None | Wish::Pause => false,
+            Wish::Step | Wish::After(_) => true,
+        };
+        self.may_pass || steps || !self.points.is_empty()
+    }
+
+    /// Stops between two instants, if somebody has asked for it.
+    pub(super) fn pause_now(&mut self) {
+        if self.wish == Wish::Pause && self.stopped.is_none() {
+            self.wish = Wish::None;
+            self.stopped = Some(Stop {
+                reason: Reason::Pause,
+                next: None,
+            });
+        }
     }
 
     /// The program has ended.
@@ -106,7 +123,7 @@ impl Machine {
         self.stops.stopped.as_ref()
     }
 
-    /// Stops before the next reaction.
+    /// Stops before the next instant.
     pub fn pause(&mut self) {
         if self.stopped().is_none() {
             self.stops.wish = Wish::Pause;
@@ -116,7 +133,8 @@ impl Machine {
     /// Goes on at the next step of the caller.
     pub fn go_on(&mut self) {
         self.stops.wish = Wish::None;
-        self.stops.may_pass |= self.stops.stopped.take().is_some();
+        let stop = self.stops.stopped.take();
+        self.stops.may_pass |= stop.is_some_and(|stop| stop.next.is_some());
     }
 
     /// Goes on for a step.
@@ -153,6 +171,16 @@ impl Machine {
             && node.linked == 0
         {
             return Err(NoPoint::Cannot(words::starts_by_itself()));
+        }
+        if let Op::Flow(Flow::InPort) = node.op {
+            return Err(NoPoint::Cannot(words::only_passes()));
+        }
+        if point.condition.len() > lang_diagram::limits::CONDITION_MAX {
+            return Err(NoPoint::TooLong);
+        }
+        if !point.condition.is_empty() {
+            let checked = self.formulas.check_condition(&point.condition);
+            checked.map_err(NoPoint::Condition)?;
         }
         if self.stops.points.len() >= limits::BREAKPOINTS_MAX {
             return Err(NoPoint::TooMany);
@@ -197,14 +225,17 @@ impl Machine {
         });
     }
 
-    /// Where it is stopped, in the new version; it goes on if that place is gone.
-    pub(super) fn move_stop(&mut self, to: impl FnOnce(Target) -> Option<Target>) {
-        let Some(stop) = self.stops.stopped.take() else {
-            return;
-        };
-        self.stops.stopped = to(stop.at).map(|at| Stop { at, ..stop });
-        if self.stops.stopped.is_none() {
-            self.stops.wish = Wish::Pause;
+    /// Where it is stopped, in the new version: if the token that comes next is gone, so is the rest of its instant.
+    pub(super) fn move_stop(&mut self, is_next_there: bool) {
+        self.stops.may_pass &= is_next_there;
+        let next = self.deliveries.front().cloned();
+        if let Some(stop) = &mut self.stops.stopped
+            && stop.next.is_some()
+        {
+            stop.next = next;
+            if !is_next_there {
+                stop.reason = Reason::Pause;
+            }
         }
     }
 
@@ -220,8 +251,7 @@ impl Machine {
             return false;
         }
         let wished = match self.stops.wish {
-            Wish::None => None,
-            Wish::Pause => Some(Reason::Pause),
+            Wish::None | Wish::Pause => None,
             Wish::Step => Some(Reason::Step),
             Wish::After(moment) => (self.now > moment).then_some(Reason::Step),
         };
@@ -231,8 +261,7 @@ impl Machine {
         self.stops.wish = Wish::None;
         self.stops.stopped = Some(Stop {
             reason,
-            at: to,
-            token: token.clone(),
+            next: Some((to, token.clone())),
         });
         true
     }

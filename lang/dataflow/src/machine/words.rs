@@ -270,3 +270,10 @@ pub(crate) fn starts_by_itself() -> Words {
         "этот блок сам даёт показания: остановитесь на блоке после него",
     )
 }
+
+pub(crate) fn only_passes() -> Words {
+    Words::new(
+        "tokens pass this port without a reaction: stop at the block after it",
+        "через этот порт сигналы проходят без реакции: остановитесь на блоке после него",
+    )
+}

@@ -11,10 +11,28 @@ use lang_text::problem::Locale;
 /// The program in words for pupils: diagrams, and in each its blocks in the order of the diagram. A line below a block is
 /// an edge that begins there.
 pub fn sentences(project: &Project, locale: Locale) -> String {
+    let lines = lines(project, locale);
+    lines
+        .into_iter()
+        .flat_map(|line| [line.text, "\n".to_owned()])
+        .collect()
+}
+
+/// A line of the sentences.
+#[derive(Clone, Debug, Default)]
+pub struct Line {
+    /// The sentence with its indentation.
+    pub text: String,
+    /// The id of the block of which it says what it is.
+    pub block: Option<String>,
+}
+
+/// The sentences line by line.
+pub fn lines(project: &Project, locale: Locale) -> Vec<Line> {
     let mut writer = Writer {
         project,
         locale,
-        out: String::new(),
+        out: Vec::new(),
     };
     for at in 0..project.diagrams.len() {
         writer.diagram(at);
@@ -25,7 +43,7 @@ pub fn sentences(project: &Project, locale: Locale) -> String {
 struct Writer<'a> {
     project: &'a Project,
     locale: Locale,
-    out: String,
+    out: Vec<Line>,
 }
 
 impl Writer<'_> {
@@ -34,15 +52,16 @@ impl Writer<'_> {
     }
 
     fn line(&mut self, depth: usize, text: &str) {
-        self.out.push_str(&"  ".repeat(depth));
-        self.out.push_str(text);
-        self.out.push('\n');
+        self.out.push(Line {
+            text: format!("{}{text}", "  ".repeat(depth)),
+            block: None,
+        });
     }
 
     fn diagram(&mut self, at: usize) {
         let diagram = &self.project.diagrams[at];
         if !self.out.is_empty() {
-            self.out.push('\n');
+            self.out.push(Line::default());
         }
         let word = match diagram.kind {
             DiagramKind::Main => Word::Program,
@@ -104,6 +123,9 @@ impl Writer<'_> {
         };
         let colon = if parts.is_empty() { "" } else { ": " };
         self.line(1, &format!("{said}{colon}{}", parts.join(", ")));
+        if let Some(line) = self.out.last_mut() {
+            line.block = Some(block.id.clone());
+        }
     }
 
     fn edge(&mut self, edge: &Edge, diagram: &Diagram, names: &[String], depth: usize) {
