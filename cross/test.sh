@@ -40,6 +40,10 @@ unit() {
     CARGO_PROFILE_DEV_OPT_LEVEL=1 PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p converter -p filters -p trikfs -p trikd -- \
         --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
         --skip a_program_that_is_missing_is_named "$@"
+    say "programs of data flow do the same here, to the letter"
+    local chosen=("$@")
+    [ "$#" -gt 0 ] || chosen=(machine:: debug::)
+    CARGO_PROFILE_DEV_OPT_LEVEL=1 cross_cargo test --lib -p lang-dataflow -- "${chosen[@]}"
 }
 
 # The programs that ship, one above the other, and a client of a few lines.

@@ -62,6 +62,10 @@ impl Program for Dataflow {
         self.machine.errors()
     }
 
+    fn warnings(&self) -> &[Problem] {
+        self.machine.warnings()
+    }
+
     fn running(&self) -> Vec<Running> {
         let program = self.machine.program();
         let at = self.last.0.map(|id| {

@@ -39,6 +39,11 @@ pub trait Program {
     /// What went wrong in it so far, in order; it only grows.
     fn errors(&self) -> &[Problem];
 
+    /// What was strange in it so far and does not end it, in order; it only grows.
+    fn warnings(&self) -> &[Problem] {
+        &[]
+    }
+
     /// Why it cannot even begin.
     fn refusal(&self) -> Option<&Problem> {
         None

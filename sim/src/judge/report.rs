@@ -11,6 +11,7 @@ use lang_text::problem::{Locale, Place, Problem};
 pub fn level(level: Level) -> &'static str {
     match level {
         Level::Info => "info",
+        Level::Warning => "warning",
         // What is wrong with rules is told like everything that is wrong.
         Level::Error | Level::Critical => "error",
         Level::Log | Level::Variables => "log",

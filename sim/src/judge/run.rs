@@ -133,6 +133,8 @@ pub(super) struct Run<'a> {
     trajectory: Trajectory,
     track: Track,
     heard: usize,
+    /// How many warnings of the program were told.
+    warned: usize,
     /// Once it is known.
     pub verdict: Option<Verdict>,
     pub failure: Option<Failure>,
@@ -173,6 +175,7 @@ impl<'a> Run<'a> {
             trajectory,
             track: Track::default(),
             heard: 0,
+            warned: 0,
             verdict: None,
             failure: None,
         }
@@ -333,15 +336,30 @@ impl<'a> Run<'a> {
 
     /// Tells what is new among the errors of a program.
     pub fn hear(&mut self, now: u32, errors: &[Problem]) {
-        for problem in errors.iter().skip(self.heard) {
+        self.tell(
+            now,
+            Level::Error,
+            errors.get(self.heard..).unwrap_or_default(),
+        );
+        self.heard = self.heard.max(errors.len());
+    }
+
+    /// Tells what is new among its warnings.
+    pub fn hear_warnings(&mut self, now: u32, warnings: &[Problem]) {
+        let new = warnings.get(self.warned..).unwrap_or_default();
+        self.tell(now, Level::Warning, new);
+        self.warned = self.warned.max(warnings.len());
+    }
+
+    fn tell(&mut self, now: u32, level: Level, problems: &[Problem]) {
+        for problem in problems {
             self.entries.push(Entry {
-                level: Level::Error,
+                level,
                 at_ms: u64::from(now),
                 place: report::place(problem),
                 text: report::text(problem, self.settings.locale),
             });
         }
-        self.heard = self.heard.max(errors.len());
     }
 
     /// Ends it as failed, for a reason of the judge's own.

@@ -122,6 +122,7 @@ impl<'a> Trial<'a> {
             ..
         } = self;
         let now = *now;
+        run.hear_warnings(now, program.warnings());
         run.hear(now, program.errors());
         run.track(now, program, arena);
         arena.renew();

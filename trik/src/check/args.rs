@@ -13,7 +13,8 @@ use std::path::PathBuf;
 /// Options of `trik check`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct CheckArgs {
-    /// Solutions: diagrams NAME.qrs, programs NAME.js and NAME.py if a field is given, and directories of them.
+    /// Solutions: diagrams NAME.qrs, data-flow programs NAME.flow, programs NAME.js and NAME.py if a field is given, and
+    /// directories of them.
     #[arg(value_name = "FILE|DIR", required_unless_present_any = ["worker", "log"])]
     pub paths: Vec<PathBuf>,
     /// A world with its rules instead of the solution's own: walls, robot, sensors and constraints are all replaced. May

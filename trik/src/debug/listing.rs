@@ -8,7 +8,7 @@ use crate::diagrams::save::must;
 use crate::refusal::Refusal;
 use crate::terminal::harmless;
 use lang_dataflow::project::Project as Flow;
-use lang_dataflow::show::callings;
+use lang_dataflow::show;
 use lang_diagram::blocks;
 use lang_diagram::project::Project;
 use lang_diagram::show::outline::{self, Line};
@@ -53,28 +53,23 @@ impl Listing {
         listing
     }
 
-    /// A data-flow program: a line for each block, which people may mean by its caption too.
+    /// A data-flow program, whose blocks people may mean by their captions too: of several with one caption the one of the
+    /// main diagram; those of subprograms also as DIAGRAM/CAPTION.
     pub(crate) fn of_flow(project: &Flow, locale: Locale) -> Self {
         let mut listing = Self::default();
-        for diagram in &project.diagrams {
+        for line in show::lines(project, locale) {
             listing.lines.push(Line {
-                text: format!("{}:", diagram.name),
-                blocks: Vec::new(),
+                text: line.text,
+                blocks: line.block.iter().map(|id| id.as_str().into()).collect(),
             });
-            let names = callings(diagram, locale);
-            for (block, name) in diagram.blocks.iter().zip(names) {
-                let kind = block.row.map(|row| row.shown_in(locale));
-                let kind = kind.unwrap_or(&block.element);
-                let text = match name.as_str() == kind {
-                    true => format!("  {name}"),
-                    false => format!("  {name} - {kind}"),
-                };
+        }
+        let main = project.main.and_then(|at| project.diagrams.get(at));
+        for diagram in main.into_iter().chain(&project.diagrams) {
+            for (block, name) in diagram.blocks.iter().zip(show::callings(diagram, locale)) {
                 let id: Box<str> = block.id.as_str().into();
-                listing.callings.entry(name).or_insert_with(|| id.clone());
-                listing.lines.push(Line {
-                    text,
-                    blocks: vec![id],
-                });
+                let long = format!("{}/{name}", diagram.name);
+                listing.callings.entry(long).or_insert_with(|| id.clone());
+                listing.callings.entry(name).or_insert(id);
             }
         }
         listing.find_places();

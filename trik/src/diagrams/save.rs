@@ -3,10 +3,12 @@
 //! Owns which files are read, and what is said of one that cannot be.
 
 use super::report::Reporter;
+use super::{flow, words};
 use crate::input;
 use crate::input::words::{A_DIAGRAM, why};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
+use lang_dataflow::read::{Language, language};
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
 use lang_text::problem::{Locale, Problem, Words};
@@ -26,9 +28,18 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
     read::read(&bytes).map_err(Unreadable::Save)
 }
 
-/// Reads a save of which nothing else can be said if it cannot be read.
+/// Reads a save with diagrams of control flow, of which nothing else can be said if it cannot be read.
 pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
-    must(open(path), path, locale)
+    let other = || Unreadable::File(words::only_control_flow());
+    let opened = match flow::is_text(path) {
+        true => Err(other()),
+        false => open(path),
+    };
+    let opened = opened.and_then(|opened| match language(&opened.save) {
+        Language::Diagram => Ok(opened),
+        Language::Dataflow => Err(other()),
+    });
+    must(opened, path, locale)
 }
 
 /// What was read, or why nothing else can be said of the file.

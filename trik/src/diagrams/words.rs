@@ -102,3 +102,11 @@ pub(super) fn is_program() -> Words {
         "это программа, а проверяются диаграммы (.qrs) и миры (.xml); её запускает 'trik check ПРОГРАММА --field МИР.xml'",
     )
 }
+
+/// Why a program is not taken where only the other language is known.
+pub(super) fn only_control_flow() -> Words {
+    Words::new(
+        "this is a data-flow program: it can be shown, checked, run, and stopped on a robot (trik break), and not this",
+        "это потоковая программа: её можно показать, проверить, запустить и остановить на роботе (trik break), но не это",
+    )
+}

@@ -257,7 +257,9 @@ fn every_task_is_there_in_every_language_and_nothing_else_is() {
         expected.extend(TASKS.map(|task| source(task, language)));
     }
     let mut found: Vec<PathBuf> = Vec::new();
-    for folder in std::fs::read_dir(EXAMPLES).expect("examples").flatten() {
+    let folders = std::fs::read_dir(EXAMPLES).expect("examples").flatten();
+    // Those of data flow have worlds of their own, and `diagrams::behaviours` knows them all.
+    for folder in folders.filter(|folder| folder.file_name() != "dataflow") {
         let files = std::fs::read_dir(folder.path()).expect("a folder");
         found.extend(files.flatten().map(|file| file.path()));
     }

@@ -119,6 +119,7 @@ fn data(trajectory: &Trajectory, entries: &[Entry], caption: Caption<'_>) -> Str
     for entry in entries {
         let level = match entry.level {
             Level::Info => "info",
+            Level::Warning => "warning",
             Level::Error | Level::Critical => "error",
             Level::Log => "log",
             Level::Variables => continue,

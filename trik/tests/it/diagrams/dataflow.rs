@@ -77,7 +77,7 @@ fn saves_and_texts_are_shown_and_become_each_other() {
     assert_eq!(found.code(), 0, "{}", found.stdout);
     let debugged = trik(&board, &["check", "--debug", "wall.qrs"]);
     assert!(
-        debugged.code() != 0 && debugged.stderr.contains("no debugger yet"),
+        debugged.code() != 0 && debugged.stderr.contains("are debugged on a robot"),
         "{}",
         debugged.stderr
     );
@@ -115,5 +115,38 @@ fn rubbish_is_refused_with_its_place() {
             let all = format!("{}{}", output.stdout, output.stderr);
             assert!(all.contains(words), "{command} {name}: {all}");
         }
+    }
+}
+
+#[test]
+fn what_is_strange_in_a_run_is_told_and_ends_nothing() {
+    let board = Board::new();
+    let source = "diagram \"Late\"\n  L: Loop(end_border = 5, time = 10)\n  W: \"Wait and send\"(time = 100)\n  S: Say\n  L.OUT -> W.DATA\n  W.OUT -> S.CF_IN\n";
+    board.file("late.flow", source);
+    let run = trik(&board, &["check", "late.flow"]);
+    assert_eq!(run.code(), 0, "{}", run.stdout);
+    let warnings = run
+        .stdout
+        .matches("warning: Late: Wait and send 'W'")
+        .count();
+    // Each port tells the first time.
+    assert_eq!(warnings, 1, "{}", run.stdout);
+}
+
+#[test]
+fn where_only_diagrams_of_control_flow_are_known_a_data_flow_program_is_told_so() {
+    let board = Board::new();
+    let program = documented().pop().expect("a program");
+    board.file("wall.flow", &program);
+    let project = text::read(&program).expect("a program");
+    board.file("wall.qrs", save::save(&project).write().expect("a save"));
+    for name in ["wall.flow", "wall.qrs"] {
+        let found = trik(&board, &["gen", "--lang", "python", name]);
+        assert_eq!(found.code(), 2, "{}", found.stderr);
+        assert!(
+            found.stderr.contains("this is a data-flow program"),
+            "{}",
+            found.stderr
+        );
     }
 }
