@@ -10,7 +10,7 @@ use crate::lower::DATA;
 use crate::program::{Formula, NodeId, Program, Text};
 use lang_expr::names::{is_own, own_name};
 use lang_expr::tree::Node as Part;
-use lang_expr::{Names, Outside, Slot, Source, Store, Type, Value, Wanted};
+use lang_expr::{Kind, Names, Outside, Slot, Source, Store, Type, Value, Wanted};
 use lang_text::problem::{Problem, Words};
 use std::rc::Rc;
 
@@ -281,7 +281,8 @@ impl Formulas {
         holds
     }
 
-    /// Whether all texts whose own names have values can be understood with the types that variables have.
+    /// Whether all texts whose names have values can be understood with the types that those have; of the others nobody
+    /// can know it before something gives their variables values.
     ///
     /// # Errors
     /// The mistakes of the first one that cannot, with their places.
@@ -289,7 +290,14 @@ impl Formulas {
         let mut names = self.names.clone();
         for ((source, reads), text) in self.sources.iter().zip(&self.reads).zip(&program.formulas) {
             let state = &states[text.node as usize];
-            if reads & !(state.bound & !state.units) != 0 {
+            let has_value = |name: &str| match names.find(name).map(|slot| (slot, names.kind(slot)))
+            {
+                Some((slot, Some(Kind::Variable))) => self.store.get(slot).is_some(),
+                Some((_, Some(Kind::Function(_) | Kind::Sensor(_) | Kind::Constant(_)))) => true,
+                Some((_, None)) | None => false,
+            };
+            let is_missing = reads & !(state.bound & !state.units) != 0;
+            if is_missing || !source.names().all(has_value) {
                 continue;
             }
             let mut source = source.clone();
