@@ -110,18 +110,17 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
     };
     let mut robot = attached(args.at.robot.as_ref())?;
     let talked = (|| {
-        let state = ordered(&mut robot, &Order::Break(point))?;
-        let state = match state {
-            Reply::Done => ordered(&mut robot, &Order::Look)?,
-            Reply::State(_) | Reply::Refused(_) => state,
-        };
-        match state {
-            Reply::State(told) if told.state != State::Running => {
+        // It may come there before it can be looked at again.
+        let before = ordered(&mut robot, &Order::Look)?;
+        let added = ordered(&mut robot, &Order::Break(point))?;
+        match (added, before) {
+            (refused @ Reply::Refused(_), _) => Ok(refused),
+            (_, Reply::State(told)) if told.state != State::Running => {
                 // Somebody may have looked at the past, where it would go on no further than to the present.
                 ordered(&mut robot, &Order::Present)?;
                 ordered(&mut robot, &Order::Continue)
             }
-            Reply::State(_) | Reply::Done | Reply::Refused(_) => Ok(state),
+            (Reply::Done | Reply::State(_), _) => ordered(&mut robot, &Order::Look),
         }
     })();
     finish(&mut robot, talked, (&args.at, listing.as_ref()))
