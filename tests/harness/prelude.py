@@ -41,6 +41,14 @@ def text(path):
         return file.read()
 
 
+def answer(path):
+    """What one reading of a file gives: its text, or the name of the error. Two readings may see two moments."""
+    try:
+        return text(path)
+    except OSError as error:
+        return errno.errorcode[error.errno]
+
+
 def stat_of(path, key):
     for line in text(path).splitlines():
         if line.split()[0] == key:

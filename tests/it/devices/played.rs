@@ -40,13 +40,13 @@ fn a_player_gives_values_failures_and_hears_what_is_written() {
         "{PLAYER}
 eventually(lambda: 'read x y' in peers and 'read m' in peers, 'both readers')
 sample('x y', 7)
-eventually(lambda: error_of(lambda: text(M + '/a/value')) is None and text(M + '/a/value') == '7\\n', 'a value')
+eventually(lambda: answer(M + '/a/value') == '7\\n', 'a value')
 fail('x y', errno.ETIMEDOUT, b'no echo')
-eventually(lambda: error_of(lambda: text(M + '/a/value')) == 'ETIMEDOUT', 'a failure')
+eventually(lambda: answer(M + '/a/value') == 'ETIMEDOUT', 'a failure')
 assert text(M + '/a/fault') == 'device: no echo\\n', text(M + '/a/fault')
 # The channel stays open, and another value ends the failure.
 sample('x y', 8)
-eventually(lambda: error_of(lambda: text(M + '/a/value')) is None and text(M + '/a/value') == '8\\n', 'a value')
+eventually(lambda: answer(M + '/a/value') == '8\\n', 'a value')
 assert text(M + '/a/fault') == ''
 open(M + '/m/value', 'w').write('-30')
 # Each connection is heard by a thread of its own, so the rest must not come before this was heard.
@@ -65,7 +65,7 @@ fn what_comes_right_after_a_failure_is_there_while_others_have_the_channel_open(
     m.python(&format!(
         "{PLAYER}
 def value():
-    return error_of(lambda: text(M + '/a/value')) or text(M + '/a/value')
+    return answer(M + '/a/value')
 eventually(lambda: 'read x y' in peers, 'the sampler')
 sample('x y', 7)
 eventually(lambda: value() == '7\\n', 'a value')
@@ -86,7 +86,7 @@ fn rubbish_of_a_player_is_a_failure_and_a_late_one_is_found() {
         return;
     };
     m.python(&format!(
-        "assert error_of(lambda: text(M + '/a/value')) in ('ENODEV', 'ENODATA')
+        "assert answer(M + '/a/value') in ('ENODEV', 'ENODATA')
 {PLAYER}
 eventually(lambda: 'read x y' in peers, 'a reader')
 for rubbish in (b'', struct.pack('<i', 0), struct.pack('<i', 0) + b'12', struct.pack('<i', -5), b'ab', bytes(5000)):
@@ -97,7 +97,7 @@ for rubbish in (b'', struct.pack('<i', 0), struct.pack('<i', 0) + b'12', struct.
         peer.shutdown(socket.SHUT_RDWR)
     eventually(lambda: peers['read x y'] is not peer, 'a new connection after %r' % rubbish)
 sample('x y', 9)
-eventually(lambda: error_of(lambda: text(M + '/a/value')) is None and text(M + '/a/value') == '9\\n', 'a value')
+eventually(lambda: answer(M + '/a/value') == '9\\n', 'a value')
 "
     ));
 }
