@@ -9,11 +9,12 @@ mod code;
 mod commands;
 mod dialects;
 mod lines;
-mod names;
+pub mod names;
 pub(super) mod plan;
 mod print;
 mod readings;
 mod routines;
+pub mod row;
 mod steps;
 mod texts;
 mod ticks;
@@ -28,8 +29,10 @@ use super::structure::{Jumps, Manner};
 use code::{Code, Kind, Operation, Robot, each_code};
 use lang_expr::value::Compat;
 use lang_text::problem::{Problem, Severity};
+use names::Names;
 use print::{Dialect, Printer};
 use routines::Abilities;
+use row::Syntax;
 use texts::Texts;
 
 /// A language that programs are written in.
@@ -99,6 +102,16 @@ impl Language {
     /// Whether programs in it may jump: [`Options::goto`] changes nothing in others.
     pub fn has_goto(self) -> bool {
         self.dialect().abilities.jumps == Jumps::Goto
+    }
+
+    /// How statements look in it, for other generators.
+    pub fn syntax(self) -> &'static Syntax {
+        &self.dialect().syntax
+    }
+
+    /// No names yet but the words that it has itself, for other generators.
+    pub fn names(self) -> Names {
+        Names::new(self.dialect().rules)
     }
 
     fn dialect(self) -> &'static Dialect {

@@ -28,7 +28,7 @@ pub(super) struct Rules {
 
 /// Names that are in use.
 #[derive(Clone, Debug)]
-pub(super) struct Names {
+pub struct Names {
     rules: Rules,
     used: HashSet<String>,
 }
@@ -48,7 +48,7 @@ impl Names {
     }
 
     /// A free name like the one that is wanted.
-    pub(super) fn take(&mut self, wanted: &str) -> String {
+    pub fn take(&mut self, wanted: &str) -> String {
         let plain = plain(wanted, self.rules);
         let mut name = plain.clone();
         let mut count = 1;

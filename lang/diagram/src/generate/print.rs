@@ -10,109 +10,12 @@ use super::lines::find_named;
 use super::names::{Names, Rules};
 use super::plan::Owner;
 use super::routines::{Abilities, Routine, Script};
+pub(super) use super::row::{
+    NONE, Row, Syntax, apart, call, fill, float, infix, postfix, prefix, quote,
+};
+use super::row::{SUM, is_hidden};
 use crate::blocks::act::Phrase;
 use crate::program::Program;
-
-/// How one thing is said. `$1` and so on stand for operands.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub(super) text: &'static str,
-    /// How strongly the whole binds; [`ATOM`] for calls and names.
-    pub(super) binds: u8,
-    /// How strongly the first and the second operand must bind.
-    pub(super) needs: [u8; 2],
-}
-
-/// Binds like a name.
-pub(super) const ATOM: u8 = u8::MAX;
-
-/// What a sum asks of its operands, in all dialects: more needs brackets around a negative number.
-const SUM: u8 = 12;
-
-/// A call, or anything else that keeps its operands apart.
-pub(super) const fn call(text: &'static str) -> Row {
-    Row {
-        text,
-        binds: ATOM,
-        needs: [0, 0],
-    }
-}
-
-/// An operator between operands that associates to the left.
-pub(super) const fn infix(text: &'static str, binds: u8) -> Row {
-    Row {
-        text,
-        binds,
-        needs: [binds, binds + 1],
-    }
-}
-
-/// An operator whose operands must both bind more strongly, as comparisons.
-pub(super) const fn apart(text: &'static str, binds: u8) -> Row {
-    Row {
-        text,
-        binds,
-        needs: [binds + 1, binds + 1],
-    }
-}
-
-/// An operator before its operand.
-pub(super) const fn prefix(text: &'static str, binds: u8) -> Row {
-    Row {
-        text,
-        binds,
-        needs: [binds + 1, 0],
-    }
-}
-
-/// An operand before brackets or a point.
-pub(super) const fn postfix(text: &'static str) -> Row {
-    Row {
-        text,
-        binds: ATOM,
-        needs: [ATOM, 0],
-    }
-}
-
-/// Nothing: the language has no words for it.
-pub(super) const NONE: Row = call("");
-
-/// How statements look.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Syntax {
-    pub(super) indent: &'static str,
-    pub(super) comment: &'static str,
-    /// An expression as a statement.
-    pub(super) statement: &'static str,
-    pub(super) set: &'static str,
-    pub(super) if_: &'static str,
-    pub(super) else_if: &'static str,
-    pub(super) else_: &'static str,
-    pub(super) end: &'static str,
-    pub(super) forever: &'static str,
-    pub(super) while_: &'static str,
-    /// Head and foot; without them a loop that is left at its foot.
-    pub(super) do_while: Option<(&'static str, &'static str)>,
-    /// How often, the variable that counts, and a place for how often.
-    pub(super) repeat: &'static str,
-    /// The same if how often is a plain number.
-    pub(super) repeat_plain: &'static str,
-    pub(super) end_loop: &'static str,
-    pub(super) break_: &'static str,
-    pub(super) continue_: &'static str,
-    pub(super) break_to: &'static str,
-    pub(super) continue_to: &'static str,
-    /// At the foot of a loop, for languages where going on is a jump there.
-    pub(super) continue_label: &'static str,
-    /// Before a loop that is named by a break.
-    pub(super) name_loop: &'static str,
-    pub(super) return_: &'static str,
-    pub(super) goto: &'static str,
-    pub(super) label: &'static str,
-    /// A body without statements.
-    pub(super) empty: &'static str,
-    pub(super) call: &'static str,
-}
 
 /// The words of a language for each group of operations. Each is a match in full, so that a new operation does not
 /// compile until every language has words for it or [`NONE`].
@@ -185,31 +88,6 @@ pub(super) struct Printer<'a> {
     /// Loops that are named by breaks and continues from inside of other loops.
     pub(super) named: Vec<usize>,
     pub(super) around: Vec<usize>,
-}
-
-/// Puts operands in their places.
-pub(super) fn fill(template: &str, operands: &[&str]) -> String {
-    let mut out = String::with_capacity(template.len() + 16);
-    let mut rest = template;
-    while let Some(at) = rest.find('$') {
-        out.push_str(&rest[..at]);
-        let digit = rest[at + 1..]
-            .chars()
-            .next()
-            .and_then(|digit| digit.to_digit(10));
-        match digit.and_then(|digit| operands.get((digit as usize).wrapping_sub(1))) {
-            Some(operand) => {
-                out.push_str(operand);
-                rest = &rest[at + 2..];
-            }
-            None => {
-                out.push('$');
-                rest = &rest[at + 1..];
-            }
-        }
-    }
-    out.push_str(rest);
-    out
 }
 
 impl<'a> Printer<'a> {
@@ -471,48 +349,6 @@ pub(super) fn has_word(text: &str, word: &str) -> bool {
         let behind = text[at + word.len()..].chars().next();
         !before.is_some_and(is_part) && !behind.is_some_and(is_part)
     })
-}
-
-/// A text in double quotes with escapes that JavaScript, Python, C and Lua share; what is not plain ASCII stands as it
-/// is, but for what ends lines.
-pub(super) fn quote(text: &str, unusual: fn(u32) -> String) -> String {
-    let mut out = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            letter if is_hidden(letter) => out.push_str(&unusual(letter as u32)),
-            letter => out.push(letter),
-        }
-    }
-    out.push('"');
-    out
-}
-
-/// Whether a letter shows nothing where it stands, or changes how others are shown.
-fn is_hidden(letter: char) -> bool {
-    letter.is_control()
-        || matches!(
-            letter,
-            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
-        )
-}
-
-/// A float that is surely one, with a point or an exponent.
-pub(super) fn float(number: f64) -> String {
-    let text = if number.abs() >= 1e16 || (number != 0.0 && number.abs() < 1e-5) {
-        format!("{number:e}")
-    } else {
-        number.to_string()
-    };
-    if text.contains(['.', 'e']) {
-        text
-    } else {
-        format!("{text}.0")
-    }
 }
 
 /// Whether a variable stands in a list.
