@@ -4,6 +4,7 @@
 
 use crate::blocks::{self, Content};
 use crate::check::check;
+use crate::generate::{Target, generate};
 use crate::machine::Machine;
 use crate::machine::trace::{Deaf, Trace};
 use crate::project::{Block, Diagram, DiagramKind, Edge, End, Policy, Project};
@@ -285,6 +286,19 @@ fn outcome(program: &Rc<crate::program::Program>, readings: &[u8]) -> (Status, u
     (status, robot.told, [count.sent, count.fired, count.lost])
 }
 
+/// A program becomes a converter in both languages, or is refused by both with a place for each reason that has one.
+fn written(program: &crate::program::Program) {
+    let both = Target::ALL.map(|target| generate(program, target));
+    let [lua, c] = &both;
+    assert_eq!(lua.is_ok(), c.is_ok());
+    for text in both.iter().flatten() {
+        assert!(text.ends_with('\n'));
+    }
+    for problems in both.iter().filter_map(|one| one.as_ref().err()) {
+        assert!(!problems.is_empty());
+    }
+}
+
 /// A project of bytes is checked, written in both forms and read again, and runs twice alike if it may run; whether it may.
 pub fn program(bytes: &[u8]) -> bool {
     let project = project(bytes);
@@ -300,6 +314,7 @@ pub fn program(bytes: &[u8]) -> bool {
         return false;
     }
     let program = Rc::new(checked.program);
+    written(&program);
     let one = outcome(&program, bytes);
     assert_eq!(
         one,

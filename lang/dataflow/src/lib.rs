@@ -12,6 +12,7 @@ pub mod blocks;
 pub mod check;
 pub mod debug;
 pub mod fuzz;
+pub mod generate;
 pub mod limits;
 pub mod lower;
 pub mod machine;

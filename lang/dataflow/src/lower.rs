@@ -6,7 +6,7 @@
 mod properties;
 
 use properties::port_of_call;
-pub(crate) use properties::{DATA, chosen, color};
+pub(crate) use properties::{DATA, INPUTS, chosen, color};
 
 use crate::blocks::{Direction, Does, Kind, Row};
 use crate::limits;
