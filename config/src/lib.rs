@@ -6,6 +6,7 @@
 //! Knows nothing of files that are mounted, and opens no device.
 
 mod check;
+mod dataflow;
 mod dcml;
 pub mod description;
 mod device_root;

@@ -115,7 +115,7 @@ pub const BAUD_RATES: [u32; 19] = [
     576_000, 921_600, 1_000_000, 1_152_000, 1_500_000, 2_000_000, 2_500_000, 3_000_000,
 ];
 
-/// Problems of the text of one model that are reported.
+/// Problems of one model or program that are reported.
 pub const MODEL_PROBLEMS_MAX: usize = 8;
 /// Milliseconds that a fuzz target gives one configuration.
 pub const FUZZ_TIME_MS: u32 = 50;

@@ -3,6 +3,7 @@
 //! Owns the order of the steps and the limits of the first run. A failure at any step leaves nothing behind.
 
 use crate::check::check;
+use crate::dataflow::{self, Language};
 use crate::dcml::{self, Named};
 use crate::description::{Config, NodeDescription};
 use crate::error::Error;
@@ -252,11 +253,35 @@ impl Run {
             self.files.insert(name.to_vec(), Arc::clone(&code));
             return Ok(code);
         }
+        if let Some((program, language)) = dataflow::asked(name) {
+            let code = self.dataflow(program, language)?;
+            self.files.insert(name.to_vec(), Arc::clone(&code));
+            return Ok(code);
+        }
         let (shown, source) = self.search.include(name)?;
         self.salt ^= hash(&source).rotate_left(1);
         let code = self.compile(&shown, &source)?;
         self.files.insert(name.to_vec(), Arc::clone(&code));
         Ok(code)
+    }
+
+    /// Finds and translates a program of data flow.
+    fn dataflow(&mut self, name: &[u8], language: Language) -> Result<Code, Error> {
+        let (shown, source) = match dataflow::is_text(name) {
+            true => ("the text of the program".to_owned(), name.to_vec()),
+            false => self.search.beside(name, &[""])?,
+        };
+        self.salt ^= hash(&source).rotate_left(3);
+        match dataflow::is_written(name) {
+            true if language == Language::Lua => self.compile(&shown, &source),
+            true => Err(Error::Named(format!(
+                "'{shown}' is Lua already: language = 'c' takes the program itself"
+            ))),
+            false => {
+                let lua = dataflow::chunk(source, name, &shown, language)?;
+                compile("=dataflow", lua.as_bytes(), true)
+            }
+        }
     }
 
     /// Finds and translates a model in DCML.

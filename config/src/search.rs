@@ -50,19 +50,27 @@ impl Search {
         Ok((format!("{shown}{ending}"), source))
     }
 
-    /// Reads a model in DCML: `name`, or `name.dcml`, beside the configuration and then in the folders for includes; then a
-    /// shipped model of that name. Gives the name that it has there and its bytes.
+    /// Reads a file beside the configuration, or in the folders for includes. Gives the name that it has there and its bytes.
     ///
     /// # Errors
     /// As `include`.
-    pub(crate) fn model(&self, name: &[u8]) -> Result<(String, Vec<u8>), Error> {
+    pub(crate) fn beside(&self, name: &[u8], endings: &[&str]) -> Result<(String, Vec<u8>), Error> {
         let mut dirs: Vec<PathBuf> = self.base_dir.iter().cloned().collect();
         dirs.extend_from_slice(&self.include_dirs);
         let all = Self {
             include_dirs: dirs,
             ..Self::default()
         };
-        match all.read(name, &["", ".dcml"]) {
+        all.read(name, endings)
+    }
+
+    /// Reads a model in DCML: `name`, or `name.dcml`, beside the configuration and then in the folders for includes; then a
+    /// shipped model of that name. Gives the name that it has there and its bytes.
+    ///
+    /// # Errors
+    /// As `include`.
+    pub(crate) fn model(&self, name: &[u8]) -> Result<(String, Vec<u8>), Error> {
+        match self.beside(name, &["", ".dcml"]) {
             Ok(found) => Ok(found),
             Err(reason) => {
                 let name = String::from_utf8_lossy(name);

@@ -13,6 +13,8 @@ mod config {
 mod converters {
     /// Several stages, several sources, nodes that read nodes.
     mod chain;
+    /// Programs of data flow, in Lua and in C.
+    mod dataflow;
     /// Several nodes in one converter: pace, ages, one moment, numbers changed on the way.
     mod fusion;
     /// Loops, greed and nonsense cost their own file only.
@@ -158,6 +160,12 @@ fn program() -> &'static str {
         std::env::var(UNDER_TEST)
             .unwrap_or_else(|_| env!("CARGO_BIN_EXE_trikfs-under-test").to_owned())
     })
+}
+
+/// Whether the program under test is the controller's, which is smaller than that of this PC.
+fn is_of_the_controller() -> bool {
+    const ARM: [u8; 2] = [40, 0];
+    std::fs::read(program()).is_ok_and(|elf| elf.get(18..20) == Some(&ARM[..]))
 }
 
 const UNDER_TEST: &str = "TRIKFS_UNDER_TEST";

@@ -44,6 +44,7 @@ const RESERVED: &[(&str, &[&str])] = &[
             "ba",
             "bit",
             "coroutine",
+            "dataflow",
             "dcml",
             "error",
             "filter",

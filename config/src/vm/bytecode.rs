@@ -38,6 +38,8 @@ pub(crate) enum Part {
     Filters,
     /// The global `dcml`.
     Dcml,
+    /// The global `dataflow`.
+    Dataflow,
     /// Digests functions.
     Fingerprint,
     /// Notes what every state has.
@@ -57,6 +59,7 @@ impl Part {
             Self::Coroutine => include_str!("lua/coroutine.lua"),
             Self::Sources => include_str!("lua/sources.lua"),
             Self::Dcml => include_str!("lua/dcml.lua"),
+            Self::Dataflow => include_str!("lua/dataflow.lua"),
             Self::Fingerprint => include_str!("lua/fingerprint.lua"),
             Self::Permanents => include_str!("lua/permanents.lua"),
             Self::Persist => include_str!("lua/persist.lua"),

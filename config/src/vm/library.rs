@@ -192,10 +192,9 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 lua::lua_pushcfunction(l, filters);
                 3
             }
-            name @ (b"dcml" | b"include" | b"load" | b"loadstring" | b"print" | b"trikfs_log"
-            | b"xpcall") => {
-                let is_model = name == b"dcml";
-                push_maker(l, if is_model { Part::Dcml } else { Part::Rare });
+            name @ (b"dataflow" | b"dcml" | b"include" | b"load" | b"loadstring" | b"print"
+            | b"trikfs_log" | b"xpcall") => {
+                push_maker(l, of_host(name));
                 lua::lua_pushvalue(l, 1);
                 lua::lua_pushvalue(l, raw);
                 lua::lua_pushcfunction(l, log);
@@ -224,6 +223,15 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 0
             }
         }
+    }
+}
+
+/// The part that makes a global which needs the program around Lua.
+fn of_host(name: &[u8]) -> Part {
+    match name {
+        b"dataflow" => Part::Dataflow,
+        b"dcml" => Part::Dcml,
+        _ => Part::Rare,
     }
 }
 
