@@ -2,13 +2,15 @@
 //!
 //! Owns the options and where the program goes. What it looks like is the business of `lang`.
 
+use super::flow::{self, Flow};
 use super::report::Reporter;
-use super::save::must_open;
+use super::save::must;
 use crate::language;
 use crate::output::Output;
 use crate::refusal::{REFUSED, Refusal, say};
 use crate::terminal::named;
 use clap::Args;
+use lang_dataflow::generate::Target;
 use lang_diagram::check::check;
 use lang_diagram::generate::{self, Language, Options};
 use lang_diagram::lower::World;
@@ -18,9 +20,10 @@ use std::path::PathBuf;
 /// What `trik gen` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct GenArgs {
-    /// The diagram, a file NAME.qrs.
+    /// The diagram, a file NAME.qrs, or a data-flow program as text, a file NAME.flow.
     pub file: PathBuf,
-    /// The language: python, javascript, lua, c, pascal or fsharp.
+    /// The language: python, javascript, lua, c, pascal or fsharp. A data-flow program becomes a converter of trikfs, in lua
+    /// or c.
     #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target_language)]
     pub lang: Language,
     /// Write to a new file; - is standard output.
@@ -65,7 +68,12 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
         source: &args.file,
         locale: args.language,
     };
-    let opened = must_open(&args.file, args.language)?;
+    let opened = match must(flow::open(&args.file), &args.file, args.language)? {
+        flow::Program::Diagram(opened) => opened,
+        flow::Program::Flow(flow, _) | flow::Program::Text(flow) => {
+            return converter(args, &flow, &output);
+        }
+    };
     output.refuse_present()?;
     let options = Options {
         goto: args.goto,
@@ -93,5 +101,39 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     let mut notes = generated.notes;
     reporter.sort(&mut notes);
     say(&reporter.lines(&notes));
+    Ok(0)
+}
+
+/// Writes a data-flow program as a converter.
+fn converter(args: &GenArgs, flow: &Flow, output: &Output<'_>) -> Result<u8, Refusal> {
+    let misused = |why: String| Refusal {
+        code: 2,
+        ..Refusal::new(why)
+    };
+    let target = match args.lang {
+        Language::Lua => Target::Lua,
+        Language::C => Target::C,
+        Language::JavaScript | Language::Python | Language::Pascal | Language::FSharp => {
+            let name = args.lang.name();
+            return Err(misused(format!(
+                "a data-flow program becomes a converter of trikfs, in lua or c: there is none in {name}"
+            )));
+        }
+    };
+    if args.goto {
+        return Err(misused("--goto is for diagrams of control flow".to_owned()));
+    }
+    output.refuse_present()?;
+    let program = flow.ready();
+    let written = program.and_then(|program| lang_dataflow::generate::generate(&program, target));
+    let text = written.map_err(|problems| {
+        let mut lines = Reporter::new(&args.file, None, args.language).lines(&problems);
+        lines.push("trik: no program was written".to_owned());
+        Refusal {
+            lines,
+            code: REFUSED,
+        }
+    })?;
+    output.write(text.as_bytes())?;
     Ok(0)
 }

@@ -16,10 +16,15 @@ fn documented() -> Vec<String> {
         .collect()
 }
 
+/// The one with two behaviours.
+fn wall_follower() -> String {
+    documented().swap_remove(3)
+}
+
 #[test]
 fn programs_of_the_document_have_nothing_wrong_and_do_what_it_says() {
     let programs = documented();
-    assert_eq!(programs.len(), 4);
+    assert_eq!(programs.len(), 5);
     let board = Board::new();
     for (at, program) in programs.iter().enumerate() {
         let name = format!("p{at}.flow");
@@ -50,7 +55,7 @@ fn programs_of_the_document_have_nothing_wrong_and_do_what_it_says() {
 #[test]
 fn saves_and_texts_are_shown_and_become_each_other() {
     let board = Board::new();
-    let program = documented().pop().expect("a program");
+    let program = wall_follower();
     board.file("wall.flow", &program);
     let project = text::read(&program).expect("a program");
     board.file("wall.qrs", save::save(&project).write().expect("a save"));
@@ -136,17 +141,52 @@ fn what_is_strange_in_a_run_is_told_and_ends_nothing() {
 #[test]
 fn where_only_diagrams_of_control_flow_are_known_a_data_flow_program_is_told_so() {
     let board = Board::new();
-    let program = documented().pop().expect("a program");
+    let program = wall_follower();
     board.file("wall.flow", &program);
     let project = text::read(&program).expect("a program");
     board.file("wall.qrs", save::save(&project).write().expect("a save"));
     for name in ["wall.flow", "wall.qrs"] {
-        let found = trik(&board, &["gen", "--lang", "python", name]);
+        let found = trik(&board, &["debug", name]);
         assert_eq!(found.code(), 2, "{}", found.stderr);
         assert!(
-            found.stderr.contains("this is a data-flow program"),
+            found
+                .stderr
+                .contains("data-flow programs are debugged on a robot"),
             "{}",
             found.stderr
         );
     }
+}
+
+#[test]
+fn programs_become_converters_in_lua_and_c_and_in_nothing_else() {
+    let board = Board::new();
+    let program = wall_follower();
+    board.file("wall.flow", &program);
+    let project = text::read(&program).expect("a program");
+    board.file("wall.qrs", save::save(&project).write().expect("a save"));
+    for (lang, has) in [("lua", "name = 'sensorD1'"), ("c", "trikfs_library_entry")] {
+        let said = trik(&board, &["gen", "wall.flow", "--lang", lang]);
+        assert_eq!(said.code(), 0, "{}", said.stderr);
+        assert!(said.stdout.contains(has), "{}", said.stdout);
+        // The save has the same program; only its name may differ.
+        let saved = trik(&board, &["gen", "wall.qrs", "--lang", lang]);
+        assert_eq!(saved.stdout, said.stdout);
+    }
+    let file = ["gen", "wall.flow", "--lang", "lua", "-o", "wall.lua"];
+    assert_eq!(trik(&board, &file).code(), 0);
+    // What is there is not overwritten.
+    assert_ne!(trik(&board, &file).code(), 0);
+    let python = trik(&board, &["gen", "wall.flow", "--lang", "python"]);
+    let told = "becomes a converter of trikfs, in lua or c";
+    assert_eq!(python.code(), 2);
+    assert!(python.stderr.contains(told), "{}", python.stderr);
+    let goto = trik(&board, &["gen", "wall.flow", "--lang", "c", "--goto"]);
+    assert_eq!(goto.code(), 2);
+    board.file("say.flow", "diagram \"Says\"\n  hello: Say(text = hello)\n");
+    let says = trik(&board, &["gen", "say.flow", "--lang", "lua"]);
+    assert_eq!(says.code(), 1);
+    let told = "say.flow: error: Says: Say 'hello': 'Say' does something beside computing";
+    assert!(says.stderr.contains(told), "{}", says.stderr);
+    assert!(says.stderr.contains("trik: no program was written"));
 }
