@@ -286,11 +286,11 @@ fn outcome(program: &Rc<crate::program::Program>, readings: &[u8]) -> (Status, u
     (status, robot.told, [count.sent, count.fired, count.lost])
 }
 
-/// A program becomes a converter in both languages, or is refused by both with a place for each reason that has one.
+/// A program becomes a converter in both languages, or is refused with reasons; a list may be too long for C alone.
 fn written(program: &crate::program::Program) {
     let both = Target::ALL.map(|target| generate(program, target));
     let [lua, c] = &both;
-    assert_eq!(lua.is_ok(), c.is_ok());
+    assert!(lua.is_ok() || c.is_err());
     for text in both.iter().flatten() {
         assert!(text.ends_with('\n'));
     }

@@ -6,12 +6,16 @@ pub const NODES_MAX: usize = 200_000;
 pub const EDGES_MAX: usize = 2_000_000;
 /// Tokens that wait at one port; an edge may say less.
 pub const QUEUE_MAX: usize = 1024;
-/// Ports that react in a converter that is made of a program.
-pub const REACTING_MAX: usize = 5000;
-/// Items of a list in a converter in C.
-pub const C_ITEMS_MAX: usize = 400;
-/// How deep expressions of a converter are nested.
-pub const GENERATED_DEPTH_MAX: usize = 100;
+/// Blocks of a program that becomes a converter.
+pub const CONVERTER_NODES_MAX: usize = 5000;
+/// Instants that a converter makes up for between two tuples; what is due later happens in one.
+pub const CONVERTER_INSTANTS_MAX: u32 = 100;
+/// Bytes of tokens that wait in a converter in C.
+pub const C_BYTES_MAX: usize = 64 << 20;
+/// Items of a list that is written in a converter in C, whose values are copied.
+pub const C_ITEMS_MAX: usize = 64;
+/// How deep expressions of a converter are nested: LuaJIT takes 200 levels, two for each bracket, and some stand around it.
+pub const GENERATED_DEPTH_MAX: usize = 80;
 /// What tokens that wait at all ports weigh together: each 1, and one more for 16 bytes of text and for each item.
 pub const QUEUED_CELLS_MAX: u32 = 1_000_000;
 /// Nodes that are looked at to find who drives a motor together with whom.

@@ -43,7 +43,7 @@ use trace::Trace;
 /// How often sensors are read, in milliseconds of model time.
 pub const POLL_MS: u32 = 20;
 /// The furthest that a servo is sent; each clamps to what it can do.
-const SERVO_DEGREES: i32 = 360;
+pub(crate) const SERVO_DEGREES: i32 = 360;
 /// Firings before the limit from which the blocks are remembered that may be a cycle.
 const REMEMBERED: u32 = 64;
 

@@ -10,7 +10,9 @@ local tostring, type = raw.tostring, raw.type
 local PERIOD_MS = 20
 local SIZES = { i8 = 1, u8 = 1, i16 = 2, u16 = 2, i32 = 4, u32 = 4, f32 = 4, f64 = 8 }
 local KEYS = { program = true, inputs = true, shows = true, poll_ms = true, language = true }
-local COUNT_MAX = 400
+local COUNT_MAX, NAME_MAX = 400, 1000
+-- Room for a program in Lua of as many blocks as it may have.
+local MEMORY_KB = 16384
 
 local function fail(text) error('dataflow: ' .. text, 0) end
 
@@ -65,6 +67,7 @@ local function sources(given, program)
   if type(wanted) ~= 'table' then fail('inputs must be a table, not ' .. shown(wanted)) end
   local known = {}
   for _, input in ipairs(program.inputs) do known[input.name] = true end
+  if #wanted > 0 then fail("inputs must name sensors: " .. (program.inputs[1] or { name = 'sensorA1' }).name .. " = 'sensors/A1'") end
   for _, name in ipairs(sorted(wanted)) do
     if not known[name] then fail("inputs: the program reads no '" .. name .. "'; it reads " .. names_of(program.inputs)) end
   end
@@ -92,12 +95,18 @@ local function shows(given, program)
   end
   if type(wanted) == 'string' then wanted = { wanted } end
   if type(wanted) ~= 'table' or #wanted == 0 then fail('shows must be a list of names, not ' .. shown(given.shows)) end
+  for key in pairs(wanted) do
+    if type(key) ~= 'number' then fail('shows is a list: ' .. shown(key) .. ' is no place in it') end
+  end
   for index, name in ipairs(wanted) do
     for _, list in ipairs({ program.outputs, program.variables }) do
       for _, one in ipairs(list) do
         if one.name == name then found[index] = one end
       end
     end
+    if type(name) ~= 'string' then fail('shows must be a list of names: ' .. shown(name) .. ' is none') end
+    if found[name] then fail("shows names '" .. name .. "' twice") end
+    found[name] = true
     if not found[index] then
       fail('shows: the program has no ' .. shown(name) .. '; there are ' .. names_of(program.outputs) .. ' and the variables ' .. names_of(program.variables))
     end
@@ -108,7 +117,7 @@ end
 -- The converter in Lua.
 local function runner(program, inputs, fields)
   local begin = program.new
-  local step, lists = begin(), {}
+  local step = begin()
   return function(a_s, a, b_s, b)
     local at, readings = 0, {}
     for index = 1, #inputs do
@@ -136,7 +145,11 @@ local function runner(program, inputs, fields)
       local value = s[fields[index].field]
       if value == nil then return false end
       if value == true then value = 1 elseif value == false then value = 0 end
-      if type(value) ~= 'number' then error(fields[index].name .. ' is no number', 0) end
+      local is_number = type(value) == 'number'
+      if not is_number or value - value ~= 0 then
+        step = begin()
+        error(fields[index].name .. (is_number and ': this is no finite number' or ': this is no number'), 0)
+      end
       ba.f64(b, 8 * (index - 1), value)
     end
   end
@@ -161,20 +174,30 @@ local function describe(given)
     if not KEYS[key] then fail("there is no option '" .. key .. "'; there are " .. table.concat(sorted(KEYS), ', ')) end
   end
   if type(given.program) ~= 'string' then fail("program must be a file, 'balance.flow', or a text, not " .. shown(given.program)) end
+  if #given.program > NAME_MAX and not given.program:find('\n', 1, true) then
+    fail('program is neither the name of a file nor a text of several lines')
+  end
   local language = given.language == nil and 'lua' or given.language
   if language ~= 'lua' and language ~= 'c' then fail("language must be 'lua' or 'c', not " .. shown(language)) end
   local run, problem = chunk((language == 'c' and 'dataflow-c:' or 'dataflow:') .. given.program)
   if not run then error(problem, 0) end
   local program = run()
-  if type(program) ~= 'table' or type(program.inputs) ~= 'table' or type(program.new) ~= 'function' then
+  local is_program = type(program) == 'table' and type(program.new) == 'function' and type(program.name) == 'string'
+  for _, key in ipairs({ 'inputs', 'outputs', 'variables' }) do
+    is_program = is_program and type(program[key]) == 'table'
+  end
+  if not is_program then
     fail(shown(given.program) .. " is no program that 'trik gen --lang lua' wrote")
   end
   local inputs, src, format = sources(given, program)
   local fields, names = shows(given, program), {}
-  for index, field in ipairs(fields) do names[index] = 'f64 ' .. field.name end
+  for index, field in ipairs(fields) do
+    -- A format has Latin letters alone; the field of a program's name has them too.
+    names[index] = 'f64 ' .. (field.name:match('^[%a_][%w_]*$') or field.field)
+  end
   return {
-    about = 'computed by the program of data flow ' .. program.name, mode = 0444,
-    src = src, interval = true, input_format = format, poll_ms = given.poll_ms or PERIOD_MS, always = true,
+    memory_kb = MEMORY_KB, about = 'computed by the program of data flow ' .. program.name, mode = 0444,
+    src = src, interval = true, input_format = format, poll_ms = given.poll_ms == nil and PERIOD_MS or given.poll_ms, always = true,
     format = table.concat(names, ', '),
     converter = language == 'c' and code(program, inputs, fields) or runner(program, inputs, fields),
   }

@@ -3,6 +3,8 @@
 //! Owns what an expression is in another language. Conversions that can fail are calls of helpers, which know the words
 //! of the failure. Knows no language: its words are a table of [`super::language`].
 
+mod operators;
+
 use super::language::{Word, row};
 use super::plan::Plan;
 use super::step::Step;
@@ -14,6 +16,7 @@ use lang_expr::reserved::Function;
 use lang_expr::tree::{Binary, Field, Id, Node, Unary};
 use lang_expr::{Compat, Kind, Names, Source, Value, literal};
 use lang_text::problem::Words;
+use operators::{arithmetic, of_wholes};
 use std::rc::Rc;
 
 /// How long lists in C can become at least where an index is computed.
@@ -75,7 +78,7 @@ fn written(
         plan,
         text,
     };
-    let mut steps = Vec::new();
+    let mut steps = writer.needs();
     match writer.statements(&mut steps, last) {
         Ok(value) => (steps, value),
         Err(refused) => {
@@ -95,6 +98,27 @@ fn own(name: &str) -> &'static str {
 }
 
 impl Writer<'_, '_> {
+    /// Own names must have values before a text runs; where it may leave a side of `and` or `or` out, that is asked first.
+    fn needs(&mut self) -> Vec<Step> {
+        let tree = self.source.tree();
+        let leaves_out = tree
+            .nodes
+            .iter()
+            .any(|node| matches!(node, Node::Binary(Binary::And | Binary::Or, ..)));
+        let read: Vec<&str> = match leaves_out {
+            true => self.text.own.to_vec(),
+            false => Vec::new(),
+        };
+        let is_read = |name: &&str| self.source.names().any(|one| one == *name);
+        let read: Vec<&str> = read.into_iter().filter(is_read).collect();
+        let asked = read.into_iter().map(|name| {
+            let field = self.plan.value_of(self.text.node, own(name));
+            let needed = self.say(Word::NeedsValue, &[self.field(field)]);
+            Step::Do(self.say(Word::Ignore, &[needed]).text)
+        });
+        asked.collect()
+    }
+
     fn statements(
         &mut self,
         steps: &mut Vec<Step>,
@@ -136,7 +160,7 @@ impl Writer<'_, '_> {
         let value = self.value(value, 0)?;
         match self.source.tree().node(target).clone() {
             Node::Name(name) => {
-                let field = self.variable(&name);
+                let field = self.target(&name);
                 steps.push(Step::Set(field.text, value.text));
             }
             Node::Index { table, index } => {
@@ -145,7 +169,7 @@ impl Writer<'_, '_> {
                 };
                 self.makes_room(index);
                 let index = self.whole(index, 0)?;
-                let field = self.variable(&name);
+                let field = self.target(&name);
                 let put = self.say(Word::Put, &[field.clone(), index, value]);
                 steps.push(Step::Set(field.text, put.text));
             }
@@ -187,7 +211,9 @@ impl Writer<'_, '_> {
             | Node::Assign { .. }
             | Node::Block(_) => COMPUTED_ROOM,
         };
-        let room = usize::try_from(room).unwrap_or(0).min(limits::C_ITEMS_MAX);
+        let room = usize::try_from(room)
+            .unwrap_or(0)
+            .min(self.plan.items_max());
         self.plan.longest = self.plan.longest.max(room);
     }
 
@@ -218,6 +244,17 @@ impl Writer<'_, '_> {
     /// A field by its name.
     fn field(&self, name: String) -> Phrase {
         self.say(Word::Field, &[Phrase::atom(name)])
+    }
+
+    /// What an assignment to a name changes: an own name of the block is nobody else's.
+    fn target(&mut self, name: &Rc<str>) -> Phrase {
+        match self.text.own.contains(&&**name) {
+            true => {
+                let field = self.plan.value_of(self.text.node, own(name));
+                self.field(field)
+            }
+            false => self.variable(name),
+        }
     }
 
     fn variable(&mut self, name: &Rc<str>) -> Phrase {
@@ -251,7 +288,8 @@ impl Writer<'_, '_> {
             Node::Unary(Unary::BitNot, _) => self.whole(id, depth)?,
             Node::Binary(operator, left, right) => match arithmetic(operator) {
                 Some(word) => {
-                    let operands = [self.number(left, depth)?, self.number(right, depth)?];
+                    // A long sum nests nothing: its left side needs no brackets.
+                    let operands = [self.number(left, depth - 1)?, self.number(right, depth)?];
                     self.say(word, &operands)
                 }
                 None if of_wholes(operator).is_some() => self.whole(id, depth)?,
@@ -268,16 +306,19 @@ impl Writer<'_, '_> {
             | Node::Bool(_)
             | Node::Text(_)
             | Node::RawText(_)
-            | Node::Name(_)
             | Node::Unary(Unary::Length, _)
             | Node::Index { .. }
             | Node::Method { .. }
             | Node::Table { .. }
             | Node::Assign { .. }
-            | Node::Block(_) => match self.constant(id) {
+            | Node::Block(_) => {
+                let value = self.value(id, depth)?;
+                self.say(Word::Number, &[value])
+            }
+            Node::Name(name) => match self.constant(id) {
                 Some(number) => self.literal(&number),
                 None => {
-                    let value = self.value(id, depth)?;
+                    let value = self.name(id, &name)?;
                     self.say(Word::Number, &[value])
                 }
             },
@@ -414,7 +455,14 @@ impl Writer<'_, '_> {
                 self.say(Word::ValueOfTruth, &[truth])
             }
             Node::Text(_) | Node::RawText(_) => return Err(self.refuse(id, words::no_texts())),
-            Node::Name(name) => self.name(id, &name)?,
+            Node::Name(name) => {
+                // One that has no value yet is a mistake also where nothing computes with it.
+                let value = self.name(id, &name)?;
+                match self.constant(id) {
+                    Some(_) => value,
+                    None => self.say(Word::NeedsValue, &[value]),
+                }
+            }
             Node::Unary(Unary::Length, operand) => {
                 let operand = self.value(operand, depth)?;
                 let length = self.say(Word::Length, &[operand]);
@@ -455,8 +503,7 @@ impl Writer<'_, '_> {
 
     fn name(&mut self, id: Id, name: &Rc<str>) -> Result<Phrase, Refused> {
         if self.text.own.contains(&&**name) {
-            let field = self.plan.value_of(self.text.node, own(name));
-            return Ok(self.field(field));
+            return Ok(self.target(name));
         }
         let slot = self.names.find(name);
         match slot.and_then(|slot| self.names.kind(slot)).cloned() {
@@ -475,8 +522,9 @@ impl Writer<'_, '_> {
     }
 
     fn table(&mut self, id: Id, fields: &[Field], depth: usize) -> Result<Phrase, Refused> {
-        if fields.len() > limits::C_ITEMS_MAX {
-            return Err(self.refuse(id, words::list_too_long(limits::C_ITEMS_MAX)));
+        let limit = self.plan.items_max();
+        if fields.len() > limit {
+            return Err(self.refuse(id, words::list_too_long(limit)));
         }
         let mut items = Vec::with_capacity(fields.len());
         for field in fields {
@@ -542,59 +590,5 @@ impl Writer<'_, '_> {
             true => Ok(depth + 1),
             false => Err(self.refuse(id, words::too_deep(limits::GENERATED_DEPTH_MAX))),
         }
-    }
-}
-
-/// The word of an operator that computes with numbers as they are.
-fn arithmetic(operator: Binary) -> Option<Word> {
-    match operator {
-        Binary::Add => Some(Word::Add),
-        Binary::Subtract => Some(Word::Subtract),
-        Binary::Multiply => Some(Word::Multiply),
-        Binary::Divide => Some(Word::Divide),
-        Binary::Power => Some(Word::Power),
-        Binary::DivideWhole
-        | Binary::Modulo
-        | Binary::BitAnd
-        | Binary::BitOr
-        | Binary::BitXor
-        | Binary::ShiftLeft
-        | Binary::ShiftRight
-        | Binary::Join
-        | Binary::Or
-        | Binary::And
-        | Binary::Less
-        | Binary::Greater
-        | Binary::LessEqual
-        | Binary::GreaterEqual
-        | Binary::NotEqual
-        | Binary::Equal => None,
-    }
-}
-
-/// The word of an operator that computes with whole numbers.
-fn of_wholes(operator: Binary) -> Option<Word> {
-    match operator {
-        Binary::DivideWhole => Some(Word::DivideWhole),
-        Binary::Modulo => Some(Word::Modulo),
-        Binary::BitAnd => Some(Word::BitAnd),
-        Binary::BitOr => Some(Word::BitOr),
-        Binary::BitXor => Some(Word::BitXor),
-        Binary::ShiftLeft => Some(Word::ShiftLeft),
-        Binary::ShiftRight => Some(Word::ShiftRight),
-        Binary::Add
-        | Binary::Subtract
-        | Binary::Multiply
-        | Binary::Divide
-        | Binary::Power
-        | Binary::Join
-        | Binary::Or
-        | Binary::And
-        | Binary::Less
-        | Binary::Greater
-        | Binary::LessEqual
-        | Binary::GreaterEqual
-        | Binary::NotEqual
-        | Binary::Equal => None,
     }
 }

@@ -15,6 +15,8 @@ use lang_expr::reserved::Function;
 pub(super) enum Word {
     /// A field of the state.
     Field,
+    /// Milliseconds of the program's time.
+    Now,
     /// Nothing, as a token.
     Unit,
     Yes,

@@ -9,8 +9,8 @@ use crate::program::{Act, Flow, Node, NodeId, Op, Program, Source, Target as To}
 use lang_diagram::generate::Language;
 use lang_diagram::generate::names::Names;
 use lang_diagram::ports::{Port, Sort};
-use lang_expr::Value;
 use lang_expr::reserved::{SENSORS, SensorIndex, Shape};
+use lang_expr::{Source as Formula, Value};
 use lang_text::problem::{Place, Problem, Words};
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
@@ -29,12 +29,8 @@ pub(super) enum Field {
 /// The first output of the block *Encoders*.
 pub(super) const ENCODER_OUT: usize = 6;
 
-/// Names of every converter's own fields, and of what its functions have.
-const OWN: [&str; 17] = [
-    "all", "at", "due", "fault", "firings", "made", "name", "now", "number", "out", "s", "set",
-    "text", "timers", "token", "tokens", "us",
-];
-
+/// Fields of every converter in Lua; those in C have names of another form.
+const OWN: [&str; 2] = ["now", "firings"];
 /// Everything that is decided before anything is written.
 pub(super) struct Plan<'a> {
     pub program: &'a Program,
@@ -63,6 +59,7 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
+    /// The plan of a program; with problems if it cannot be a converter.
     pub(super) fn of(program: &'a Program, target: Target) -> Self {
         let language = match target {
             Target::Lua => Language::Lua,
@@ -90,6 +87,11 @@ impl<'a> Plan<'a> {
             places: HashMap::new(),
             free: language.names(),
         };
+        if program.nodes.len() > limits::CONVERTER_NODES_MAX {
+            let words = words::too_large(limits::CONVERTER_NODES_MAX);
+            plan.problem(Place::default(), words);
+            return plan;
+        }
         for node in &program.nodes {
             let instance = &program.instances[node.instance as usize];
             let caller = instance.caller.map(|caller| caller as usize);
@@ -183,6 +185,9 @@ impl<'a> Plan<'a> {
     fn look_at_constant(&mut self, id: NodeId, value: &Value) {
         match value {
             Value::Text(_) | Value::Unset => self.refuse_block(id, words::no_texts()),
+            Value::List(list) if list.items().len() > self.items_max() => {
+                self.refuse_block(id, words::list_too_long(self.items_max()));
+            }
             Value::List(list) => {
                 self.longest = self.longest.max(list.items().len());
                 for item in list.items() {
@@ -195,6 +200,24 @@ impl<'a> Plan<'a> {
             }
             Value::Nil | Value::Bool(_) | Value::Int(_) | Value::Float(_) => {}
         }
+    }
+
+    /// How many items a list may have that is written down.
+    pub(super) fn items_max(&self) -> usize {
+        match self.target {
+            Target::Lua => limits::ITEMS_MAX,
+            Target::C => limits::C_ITEMS_MAX,
+        }
+    }
+
+    /// Whether a text of a node reads an own name.
+    pub(super) fn reads(&self, id: NodeId, name: &str) -> bool {
+        let texts = self.program.formulas.iter();
+        let mut of_node = texts.filter(|text| text.node == id);
+        of_node.any(|text| {
+            let source = Formula::new(&text.text, text.wanted);
+            source.names().any(|one| one == name)
+        })
     }
 
     /// Whether something starts a node by its control input.
@@ -222,10 +245,6 @@ impl<'a> Plan<'a> {
         }
         all.sort_by_key(|to| (to.node, to.port));
         all.dedup();
-        if all.len() > limits::REACTING_MAX {
-            let problem = Problem::error(words::too_large(limits::REACTING_MAX));
-            self.problems.push(problem);
-        }
         self.places = (0..)
             .zip(&all)
             .map(|(at, to)| ((to.node, to.port), at))

@@ -9,6 +9,7 @@ use super::language::{Word, quoted, say};
 use super::plan::{ENCODER_OUT, Plan, gives_encoder, shows};
 use super::step::{Body, Routine, Step};
 use crate::blocks::CONTROL_OUT;
+use crate::machine::SERVO_DEGREES;
 use crate::program::{Act, Flow, Formula, NodeId, Op, Source, Target as To};
 use crate::project::Policy;
 use lang_diagram::ports::{Port, Sort};
@@ -19,6 +20,7 @@ use std::rc::Rc;
 const CONTROL: u8 = 0;
 const DATA: u8 = 2;
 const FUNCTION_OUT: u8 = 3;
+
 /// Writes every reaction.
 pub(super) fn body(plan: &mut Plan<'_>) -> Body {
     let reacting = plan.reacting.clone();
@@ -80,7 +82,7 @@ impl Writer<'_, '_> {
     }
 
     fn now(&self) -> String {
-        self.field("now")
+        self.say(Word::Now, &[])
     }
 
     fn unit_to(&self, to: To) -> Step {
@@ -130,7 +132,8 @@ impl Writer<'_, '_> {
         if !node.queues.is_empty() && node.data & (1 << to.port) != 0 {
             return self.queued(to);
         }
-        match &node.op {
+        let mut steps = vec![Step::Do(self.say(Word::Count, &[]))];
+        steps.extend(match &node.op {
             Op::Flow(flow) => self.flow(to, flow),
             Op::Source(source) => match source {
                 Source::Sensor(_) => {
@@ -141,7 +144,8 @@ impl Writer<'_, '_> {
                 Source::Detect(_) | Source::Gamepad | Source::Receive => Vec::new(),
             },
             Op::Act(act) => self.act(to, act),
-        }
+        });
+        steps
     }
 
     /// Encoders count from what they are told; the device itself is not told anything.
@@ -195,7 +199,9 @@ impl Writer<'_, '_> {
             .filter(|port| node.data & (1 << port) != 0)
             .collect();
         if let [port] = ports[..] {
-            return self.together(to.node, &[(port as u8, "token".to_owned())]);
+            let mut steps = vec![Step::Do(self.say(Word::Count, &[]))];
+            steps.extend(self.together(to.node, &[(port as u8, "token".to_owned())]));
+            return steps;
         }
         let mut queues = Vec::new();
         for &port in &ports {
@@ -266,8 +272,9 @@ impl Writer<'_, '_> {
     /// A motor or servo is told the number of a token.
     fn tell(&self, port: Port, token: &str) -> Step {
         let number = self.say(Word::AsWhole, &[token]);
+        let servo = SERVO_DEGREES.to_string();
         let most = match port.sort() {
-            Sort::Servo => "360",
+            Sort::Servo => &*servo,
             Sort::Motor | Sort::Encoder | Sort::Scalar | Sort::Vector | Sort::Button(_) => "100",
         };
         let name = self.plan.told(port);
@@ -426,6 +433,10 @@ impl Writer<'_, '_> {
             };
             let sends = match value {
                 Some(value) => self.send_text(to.node, port, *value),
+                // A start lets the last token through, if it was kept for a text.
+                None if to.port == CONTROL && !self.plan.reads(to.node, "data") => {
+                    self.send_unit(to.node, port)
+                }
                 None if to.port == CONTROL => {
                     let data = self.value(to.node, "data");
                     self.send(to.node, port, &data)

@@ -50,8 +50,8 @@ pub(super) fn too_deep(limit: usize) -> Words {
 
 pub(super) fn list_too_long(limit: usize) -> Words {
     Words::new(
-        format!("a list of a converter in C has at most {limit} items"),
-        format!("в списке преобразователя на C может быть не больше {limit} элементов"),
+        format!("a list in this language has at most {limit} items"),
+        format!("на этом языке в списке может быть не больше {limit} элементов"),
     )
 }
 
@@ -64,9 +64,9 @@ pub(super) fn no_inputs() -> Words {
 
 pub(super) fn too_large(limit: usize) -> Words {
     Words::new(
-        format!("a converter has at most {limit} ports that tokens come to"),
+        format!("a converter has at most {limit} blocks, those of each call counted"),
         format!(
-            "в преобразователе может быть не больше {limit} портов, в которые приходят значения"
+            "в преобразователе может быть не больше {limit} блоков, считая блоки каждого вызова"
         ),
     )
 }

@@ -3,7 +3,7 @@
 //! Owns letters, reserved words and clashes. Knows no meaning of a name.
 
 use crate::limits;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Latin letters for the Cyrillic ones from U+0430 on.
 const LATIN: [&str; 32] = [
@@ -31,12 +31,15 @@ pub(super) struct Rules {
 pub struct Names {
     rules: Rules,
     used: HashSet<String>,
+    /// How far the numbers of a name have come, so that many alike take no longer each.
+    counts: HashMap<String, usize>,
 }
 
 impl Names {
     pub(super) fn new(rules: Rules) -> Self {
         Self {
             rules,
+            counts: HashMap::new(),
             used: rules
                 .reserved
                 .iter()
@@ -51,9 +54,9 @@ impl Names {
     pub fn take(&mut self, wanted: &str) -> String {
         let plain = plain(wanted, self.rules);
         let mut name = plain.clone();
-        let mut count = 1;
+        let count = self.counts.entry(folded(&plain, self.rules)).or_insert(1);
         while !self.used.insert(folded(&name, self.rules)) {
-            count += 1;
+            *count += 1;
             name = format!("{plain}_{count}");
         }
         name

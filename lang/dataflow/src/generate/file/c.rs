@@ -6,6 +6,8 @@ use super::super::plan::{Field, Plan, sensor_name, shape};
 use super::super::step::{Body, Routine, Step};
 use super::super::target::Target;
 use super::{lines, makes, syntax, title};
+use crate::limits;
+use crate::machine::POLL_MS;
 use lang_expr::reserved::Shape;
 use std::fmt::Write;
 
@@ -13,6 +15,31 @@ use std::fmt::Write;
 const RUN: &str = include_str!("run.c");
 const FIELDS: &str = "/* fields */\n";
 const PROGRAM: &str = "/* the program */\n";
+
+/// How the node's numbers are taken from what the program has.
+const SHOWN: &str =
+    "static int shown(struct state *s, const char *name, struct value value, double *to)
+{
+    if (value.kind == LIST) {
+        s->at = name;
+        fail(s, \"this is no number\");
+    }
+    if (value.kind != LIST && !(fabs(value.number) <= DBL_MAX)) {
+        s->at = name;
+        fail(s, \"this is no finite number\");
+    }
+    *to = value.number;
+    return value.kind != UNIT;
+}
+
+#define WRITE(name) is_there = shown(s, #name, v_##name, &all[at++]) && is_there;
+
+/* Writes what the node shows; 0: one of it has no value yet. */
+static int fields(struct state *s, uint8_t *out)
+{
+    double all[OUTPUTS];
+    int at = 0, is_there = 1;
+";
 
 pub(super) fn assemble(plan: &Plan<'_>, body: &Body) -> String {
     let (head, rest) = RUN.split_once(FIELDS).unwrap_or((RUN, ""));
@@ -24,8 +51,17 @@ pub(super) fn assemble(plan: &Plan<'_>, body: &Body) -> String {
     let _ = writeln!(out, "#define ITEMS {}", plan.longest);
     about(plan, &mut out);
     let _ = writeln!(out, "#define TIMERS {}", plan.timers.len());
+    let _ = writeln!(
+        out,
+        "#define FIRINGS_MAX {}\n#define DELIVERIES_MAX {}\n#define QUEUED_MAX {}\n#define BYTES_MAX {}\n#define INSTANTS_MAX {}\n#define POLL_MS {POLL_MS}",
+        limits::FIRINGS_MAX,
+        limits::DELIVERIES_MAX,
+        limits::QUEUED_CELLS_MAX,
+        limits::C_BYTES_MAX,
+        limits::CONVERTER_INSTANTS_MAX
+    );
     let queues = plan.fields.iter().filter_map(|field| match field {
-        Field::Queue(name) => Some(format!(" &s->{name},")),
+        Field::Queue(name) => Some(format!(" &s->v_{name},")),
         Field::Number(..) | Field::Value(_) => None,
     });
     let _ = writeln!(out, "#define QUEUES{}\n", queues.collect::<String>());
@@ -51,7 +87,7 @@ fn about(plan: &Plan<'_>, out: &mut String) {
         let _ = write!(out, " {name}");
     }
     out.push_str(
-        "; then u32 interval_us.\n * Their types are i32, or what -DTYPE_NAME=f32 says, and lists have -DCOUNT_NAME=3 items;\n * outputs are f64, in the order of FIELDS.\n */\n",
+        "; then u32 interval_us.\n * Their types are i32, or what -DTYPE_NAME=f32 says, and lists have -DCOUNT_NAME=3 items;\n * outputs are f64, in the order of FIELDS, or of '-DFIELDS(FIELD)=FIELD(NAME) FIELD(OTHER)'.\n */\n",
     );
     for &sensor in &plan.inputs {
         let name = sensor_name(sensor);
@@ -80,12 +116,12 @@ fn about(plan: &Plan<'_>, out: &mut String) {
 }
 
 fn state(plan: &Plan<'_>, out: &mut String) {
-    out.push_str("struct state {\n    double now;\n    double us;\n    double set;\n    int firings;\n    const char *fault;\n    const char *at;\n    char text[256];\n    struct queue tokens;\n    struct timer timers[TIMERS + 1];\n");
+    out.push_str("struct state {\n    double now;\n    double us;\n    double set;\n    double queued;\n    size_t bytes;\n    int firings;\n    const char *fault;\n    const char *at;\n    char text[256];\n    struct queue tokens;\n    struct timer timers[TIMERS + 1];\n");
     for field in &plan.fields {
         let _ = match field {
-            Field::Number(name, _) => writeln!(out, "    double {name};"),
-            Field::Value(name) => writeln!(out, "    struct value {name};"),
-            Field::Queue(name) => writeln!(out, "    struct queue {name};"),
+            Field::Number(name, _) => writeln!(out, "    double v_{name};"),
+            Field::Value(name) => writeln!(out, "    struct value v_{name};"),
+            Field::Queue(name) => writeln!(out, "    struct queue v_{name};"),
         };
     }
     out.push_str("};\n");
@@ -104,14 +140,14 @@ fn inputs(plan: &Plan<'_>, out: &mut String) {
                 let _ = write!(sizes, " + COUNT_{name} * sizeof(TYPE_{name})");
                 writeln!(
                     out,
-                    "    {{\n        TYPE_{name} items[COUNT_{name}];\n        int at;\n        memcpy(items, in, sizeof items);\n        in += sizeof items;\n        s->{field}.kind = LIST;\n        s->{field}.count = COUNT_{name};\n        for (at = 0; at < COUNT_{name}; at++) {{\n            s->{field}.items[at] = items[at];\n        }}\n    }}"
+                    "    {{\n        TYPE_{name} items[COUNT_{name}];\n        int at;\n        memcpy(items, in, sizeof items);\n        in += sizeof items;\n        s->v_{field}.kind = LIST;\n        s->v_{field}.count = COUNT_{name};\n        for (at = 0; at < COUNT_{name}; at++) {{\n            s->v_{field}.items[at] = items[at];\n            s->v_{field}.kinds[at] = NUMBER;\n        }}\n    }}"
                 )
             }
             Some(Shape::Number) | None => {
                 let _ = write!(sizes, " + sizeof(TYPE_{name})");
                 writeln!(
                     out,
-                    "    {{\n        TYPE_{name} number;\n        memcpy(&number, in, sizeof number);\n        in += sizeof number;\n        s->{field} = numberValue(number);\n    }}"
+                    "    {{\n        TYPE_{name} number;\n        memcpy(&number, in, sizeof number);\n        in += sizeof number;\n        s->v_{field} = numberValue(number);\n    }}"
                 )
             }
         };
@@ -121,31 +157,25 @@ fn inputs(plan: &Plan<'_>, out: &mut String) {
 
 fn outputs(plan: &Plan<'_>, out: &mut String) {
     out.push_str("#define ONE_MORE(name) + 1\nenum { OUTPUTS = 0 FIELDS(ONE_MORE) };\n#define OUTPUT_SIZE (sizeof(double) * OUTPUTS)\n\n");
-    out.push_str("/* Writes what the node shows; 0: one of it has no value yet. */\nstatic int fields(struct state *s, uint8_t *out)\n{\n    double all[OUTPUTS];\n    int at = 0;\n");
-    let numbers = plan.fields.iter().filter_map(|field| match field {
-        Field::Number(name, _) => Some(name),
-        Field::Value(_) | Field::Queue(_) => None,
-    });
-    for name in numbers {
-        let is_output = plan.outputs.iter().any(|&port| plan.told(port) == *name);
-        if is_output {
-            let _ = writeln!(
-                out,
-                "    const struct value {name} = numberValue(s->{name});"
-            );
-        }
-    }
-    for (_, field) in plan.variables() {
-        let _ = writeln!(out, "    const struct value {field} = s->{field};");
-    }
-    out.push_str("#define WRITE(name) \\\n    if (name.kind == UNIT) { \\\n        return 0; \\\n    } \\\n    all[at++] = number(s, name);\n    FIELDS(WRITE)\n");
+    out.push_str(SHOWN);
     for &port in &plan.outputs {
-        let _ = writeln!(out, "    (void){};", plan.told(port));
+        let field = plan.told(port);
+        let _ = writeln!(
+            out,
+            "    const struct value v_{field} = numberValue(s->v_{field});"
+        );
     }
     for (_, field) in plan.variables() {
-        let _ = writeln!(out, "    (void){field};");
+        let _ = writeln!(out, "    const struct value v_{field} = s->v_{field};");
     }
-    out.push_str("    memcpy(out, all, sizeof all);\n    return 1;\n}\n\n");
+    out.push_str("    FIELDS(WRITE)\n");
+    for &port in &plan.outputs {
+        let _ = writeln!(out, "    (void)v_{};", plan.told(port));
+    }
+    for (_, field) in plan.variables() {
+        let _ = writeln!(out, "    (void)v_{field};");
+    }
+    out.push_str("    memcpy(out, all, sizeof all);\n    return is_there;\n}\n\n");
 }
 
 fn restart(plan: &Plan<'_>, out: &mut String) {
@@ -153,7 +183,7 @@ fn restart(plan: &Plan<'_>, out: &mut String) {
     for field in &plan.fields {
         match field {
             Field::Number(name, start) if *start != 0.0 => {
-                let _ = writeln!(out, "    s->{name} = {start:?};");
+                let _ = writeln!(out, "    s->v_{name} = {start:?};");
             }
             Field::Number(..) | Field::Value(_) | Field::Queue(_) => {}
         }

@@ -6,6 +6,8 @@ use super::super::plan::{Field, Plan, sensor_name, shape};
 use super::super::step::{Body, Routine, Step};
 use super::super::target::Target;
 use super::{lines, makes, syntax, title};
+use crate::limits;
+use crate::machine::POLL_MS;
 use lang_expr::reserved::Shape;
 use std::fmt::Write;
 
@@ -19,6 +21,15 @@ pub(super) fn assemble(plan: &Plan<'_>, body: &Body) -> String {
     let mut out = format!(
         "-- {}: a program of data flow as a converter, for dataflow {{ program = 'FILE.lua', ... }}.\n",
         title(plan)
+    );
+    let _ = writeln!(
+        out,
+        "local FIRINGS_MAX, DELIVERIES_MAX, ITEMS_MAX, INSTANTS_MAX = {}, {}, {}, {}\nlocal QUEUED_MAX, POLL_MS = {}, {POLL_MS}",
+        limits::FIRINGS_MAX,
+        limits::DELIVERIES_MAX,
+        limits::ITEMS_MAX,
+        limits::CONVERTER_INSTANTS_MAX,
+        limits::QUEUED_CELLS_MAX
     );
     out.push_str(before);
     for field in &plan.fields {

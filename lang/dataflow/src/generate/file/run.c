@@ -1,26 +1,21 @@
 #include "trikfs_converter.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Reactions in an instant, tokens on their way, and instants that make up for timers between two tuples. */
-#define FIRINGS_MAX 10000
-#define DELIVERIES_MAX 1000000
-#define INSTANTS_MAX 100
-/* The first tuple is the first poll of a program, which comes after its beginning. */
-#define POLL_US 20000.0
-
 enum kind { UNIT, TRUTH, NUMBER, LIST };
 
-/* What a token carries. Items of lists are numbers. */
+/* What a token carries. An item of a list is anything but a list. */
 struct value {
     int kind;
     int count;
     double number;
     double items[ITEMS];
+    unsigned char kinds[ITEMS];
 };
 
 /* Tokens that wait: a ring that grows. */
@@ -87,7 +82,8 @@ static inline double whole(double number)
         down += 1;
     }
     if (down >= -2147483648.0 && down <= 2147483647.0) {
-        return down;
+        /* What is whole has no sign where it is 0: that is what adding 0 does. */
+        return down + 0.0;
     }
     down -= floor(down / 4294967296.0) * 4294967296.0;
     return down >= 2147483648.0 ? down - 4294967296.0 : down;
@@ -105,7 +101,7 @@ static inline double asWhole(struct state *s, struct value value)
         fail(s, "the number is too large for a whole one");
         return 0;
     }
-    return away;
+    return away + 0.0;
 }
 
 static inline int truth(struct value value)
@@ -118,7 +114,7 @@ static inline double cut(double number)
     if (number != number) {
         return 0;
     }
-    return number > 2147483647.0 ? 2147483647.0 : number < -2147483648.0 ? -2147483648.0 : number;
+    return (number > 2147483647.0 ? 2147483647.0 : number < -2147483648.0 ? -2147483648.0 : number) + 0.0;
 }
 
 static inline double sign(double number) { return (number > 0) - (number < 0); }
@@ -151,7 +147,7 @@ static inline double modulo(struct state *s, double left, double right)
         fail(s, "division by 0");
         return 0;
     }
-    return left - floor(left / right) * right;
+    return left - floor(left / right) * right + 0.0;
 }
 
 static inline double bitAnd(double left, double right) { return (double)((int32_t)left & (int32_t)right); }
@@ -180,7 +176,9 @@ static inline int same(struct value one, struct value other)
             return 0;
         }
         for (at = 0; at < one.count; at++) {
-            if (one.items[at] != other.items[at]) {
+            int is_one = one.kinds[at] != UNIT;
+            int is_other = other.kinds[at] != UNIT;
+            if (is_one != is_other || (is_one && one.items[at] != other.items[at])) {
                 return 0;
             }
         }
@@ -194,11 +192,24 @@ static inline int same(struct value one, struct value other)
 
 static inline struct value item(struct state *s, struct value list, double at)
 {
+    struct value made = NOTHING;
     if (at < 0) {
         fail(s, "an index is below 0");
-        return unit();
+    } else if (list.kind == LIST && at < list.count) {
+        made.kind = list.kinds[(int)at];
+        made.number = list.items[(int)at];
     }
-    return list.kind == LIST && at < list.count ? numberValue(list.items[(int)at]) : unit();
+    return made;
+}
+
+static inline void setItem(struct state *s, struct value *list, int at, struct value value)
+{
+    if (value.kind == LIST) {
+        fail(s, "a list has no place in a list in C");
+        return;
+    }
+    list->kinds[at] = (unsigned char)value.kind;
+    list->items[at] = value.number;
 }
 
 static inline struct value listOf(struct state *s, int count, const struct value *items)
@@ -208,7 +219,7 @@ static inline struct value listOf(struct state *s, int count, const struct value
     made.kind = LIST;
     made.count = count;
     for (at = 0; at < count; at++) {
-        made.items[at] = number(s, items[at]);
+        setItem(s, &made, at, items[at]);
     }
     return made;
 }
@@ -220,17 +231,17 @@ static inline struct value put(struct state *s, struct value list, double at, st
         return list;
     }
     if (list.kind != LIST) {
+        list = NOTHING;
         list.kind = LIST;
-        list.count = 0;
     }
-    if (at > list.count || at >= ITEMS) {
-        fail(s, "an index is beyond the end of the list, which cannot grow so far in C");
+    if (at >= ITEMS) {
+        fail(s, "an index is beyond the room that lists have in C");
         return list;
     }
-    if (at == list.count) {
-        list.count++;
+    while (list.count <= at) {
+        setItem(s, &list, list.count++, NOTHING);
     }
-    list.items[(int)at] = number(s, value);
+    setItem(s, &list, (int)at, value);
     return list;
 }
 
@@ -264,37 +275,44 @@ static inline int isOver(double following, double last, double step)
     return step > 0 ? following > last : following < last;
 }
 
-static void push(struct state *s, struct queue *queue, int place, struct value token, int capacity, int policy)
+/* Makes room for one more token. */
+static int grow(struct state *s, struct queue *queue)
+{
+    int at, size = queue->size == 0 ? 16 : queue->size * 2;
+    size_t bytes = (size_t)size * (sizeof *queue->at + sizeof *queue->places);
+    struct value *tokens;
+    int *places;
+    if (s->bytes + bytes > BYTES_MAX) {
+        fail(s, "too many tokens wait or are on their way");
+        return 0;
+    }
+    tokens = malloc((size_t)size * sizeof *tokens);
+    places = malloc((size_t)size * sizeof *places);
+    if (tokens == NULL || places == NULL) {
+        free(tokens);
+        free(places);
+        fail(s, "out of memory");
+        return 0;
+    }
+    for (at = 0; at < queue->count; at++) {
+        tokens[at] = queue->at[(queue->first + at) % queue->size];
+        places[at] = queue->places[(queue->first + at) % queue->size];
+    }
+    s->bytes += bytes - (size_t)queue->size * (sizeof *queue->at + sizeof *queue->places);
+    free(queue->at);
+    free(queue->places);
+    queue->at = tokens;
+    queue->places = places;
+    queue->size = size;
+    queue->first = 0;
+    return 1;
+}
+
+static void push(struct state *s, struct queue *queue, int place, struct value token)
 {
     int at;
-    if (queue->count >= capacity) {
-        if (policy == 2) {
-            fail(s, "too many tokens wait or are on their way");
-            return;
-        }
-        queue->first = (queue->first + 1) % queue->size;
-        queue->count--;
-    }
-    if (queue->count == queue->size) {
-        int size = queue->size == 0 ? 16 : queue->size * 2;
-        struct value *tokens = malloc((size_t)size * sizeof *tokens);
-        int *places = malloc((size_t)size * sizeof *places);
-        if (tokens == NULL || places == NULL) {
-            free(tokens);
-            free(places);
-            fail(s, "out of memory");
-            return;
-        }
-        for (at = 0; at < queue->count; at++) {
-            tokens[at] = queue->at[(queue->first + at) % queue->size];
-            places[at] = queue->places[(queue->first + at) % queue->size];
-        }
-        free(queue->at);
-        free(queue->places);
-        queue->at = tokens;
-        queue->places = places;
-        queue->size = size;
-        queue->first = 0;
+    if (queue->count == queue->size && !grow(s, queue)) {
+        return;
     }
     at = (queue->first + queue->count) % queue->size;
     queue->at[at] = token;
@@ -310,15 +328,47 @@ static inline struct value take(struct queue *queue)
     return token;
 }
 
+/* What a token weighs where it waits. */
+static inline double weight(struct value token) { return token.kind == LIST ? token.count + 1 : 1; }
+
+static inline struct value takeWaiting(struct state *s, struct queue *queue)
+{
+    struct value token = take(queue);
+    s->queued -= weight(token);
+    return token;
+}
+
+static inline void waits(struct state *s, struct queue *queue, struct value token, int capacity, int policy)
+{
+    double weighs = weight(token);
+    if (queue->count >= capacity || s->queued + weighs > QUEUED_MAX) {
+        if (policy == 2) {
+            fail(s, "too many tokens wait");
+            return;
+        }
+        /* The oldest one is lost, or this one if none waits. */
+        if (queue->count == 0) {
+            return;
+        }
+        takeWaiting(s, queue);
+    }
+    s->queued += weighs;
+    push(s, queue, 0, token);
+}
+
 static inline void post(struct state *s, int place, struct value token)
 {
-    push(s, &s->tokens, place, token, DELIVERIES_MAX, 2);
+    if (s->tokens.count >= DELIVERIES_MAX) {
+        fail(s, "too many tokens are on their way");
+        return;
+    }
+    push(s, &s->tokens, place, token);
 }
 
 static inline void count(struct state *s)
 {
     if (++s->firings > FIRINGS_MAX) {
-        fail(s, "a cycle without a wait: more than 10000 reactions");
+        fail(s, "a cycle without a wait: too many reactions");
     }
 }
 
@@ -372,7 +422,6 @@ static void deliver(struct state *s)
         int place = s->tokens.places[s->tokens.first];
         struct value token = take(&s->tokens);
         s->at = reactions[place].about;
-        count(s);
         reactions[place].run(s, token);
     }
 }
@@ -382,6 +431,7 @@ static void instant(struct state *s, double now, int polls)
     s->now = now;
     s->firings = 0;
     fire(s);
+    s->at = NULL;
     if (polls && s->fault == NULL) {
         poll(s);
     }
@@ -392,8 +442,9 @@ static void tuple(struct state *s, double passed, const uint8_t *in)
 {
     double now;
     int left;
+    s->at = NULL;
     if (s->us == 0) {
-        s->us = POLL_US;
+        s->us = POLL_MS * 1000.0;
         readings(s, in);
         begin(s);
         deliver(s);
@@ -455,7 +506,7 @@ static int convert(void *state, const uint8_t *in, uint32_t in_size, uint8_t *ou
     (void)out_size;
     memcpy(&us, in + INPUT_SIZE - sizeof us, sizeof us);
     tuple(s, us, in);
-    if (s->fault == NULL && !fields(s, out)) {
+    if (s->fault == NULL && !fields(s, out) && s->fault == NULL) {
         return TRIKFS_CONSUMED;
     }
     if (s->fault != NULL) {

@@ -4,11 +4,6 @@ local atan, atan2, sqrt, abs = math.atan, math.atan2, math.sqrt, math.abs
 local band, bor, bxor, bnot, lshift, arshift = bit.band, bit.bor, bit.bxor, bit.bnot, bit.lshift, bit.arshift
 local error, pairs, pcall, tostring, type = error, pairs, pcall, tostring, type
 
--- Reactions in an instant, tokens on their way, items of a list, and instants that make up for timers between two tuples.
-local FIRINGS_MAX, DELIVERIES_MAX, ITEMS_MAX, INSTANTS_MAX = 10000, 1000000, 4096, 100
--- The first tuple is the first poll of a program, which comes after its beginning.
-local POLL_MS = 20
-
 local function fail(reason) error(reason, 0) end
 
 local function number(value)
@@ -18,8 +13,9 @@ local function number(value)
   fail(value == nil and 'there is no value where a number is needed' or 'a list is no number')
 end
 
+-- What is whole has no sign where it is 0: that is what adding 0 does.
 local function whole(number)
-  if number >= -2147483648 and number <= 2147483647 and floor(number) == number then return number end
+  if number >= -2147483648 and number <= 2147483647 and floor(number) == number then return number + 0 end
   if not (number > -9.2e18 and number < 9.2e18) then return 0 end
   local down = floor(number)
   if number - down >= 0.5 then down = down + 1 end
@@ -29,12 +25,11 @@ end
 
 local function asWhole(value)
   if type(value) ~= 'number' then fail(value == nil and 'there is no value where a number is needed' or 'this is no number') end
-  local away = value < 0 and -floor(0.5 - value) or floor(value + 0.5)
-  -- A half is lost in the numbers just below one.
-  if value > 0 and away - value > 0.5 then away = away - 1 end
-  if value < 0 and value - away > 0.5 then away = away + 1 end
-  if not (abs(away) <= 2147483647) then fail('the number is too large for a whole one') end
-  return away
+  local size = abs(value)
+  local down = floor(size)
+  if size - down >= 0.5 then down = down + 1 end
+  if not (down <= 2147483647) then fail('the number is too large for a whole one') end
+  return (value < 0 and -down or down) + 0
 end
 
 local function truth(value)
@@ -44,7 +39,7 @@ end
 
 local function cut(number)
   if number ~= number then return 0 end
-  return number > 2147483647 and 2147483647 or number < -2147483648 and -2147483648 or number
+  return (number > 2147483647 and 2147483647 or number < -2147483648 and -2147483648 or number) + 0
 end
 
 local function sign(number) return number > 0 and 1 or number < 0 and -1 or 0 end
@@ -65,7 +60,7 @@ end
 
 local function modulo(left, right)
   if right == 0 then fail('division by 0') end
-  return left - floor(left / right) * right
+  return left - floor(left / right) * right + 0
 end
 
 local function shiftLeft(left, right) return right >= 0 and right < 32 and lshift(left, right) or 0 end
@@ -131,10 +126,10 @@ local function new()
   local reactions, ticks, names = {}, {}, { reactions = {}, ticks = {} }
   local tokens, places, first, last = {}, {}, 1, 0
   local due, order, set = {}, {}, 0
-  local at
+  local at, queued = nil, 0
 
   local function post(place, token)
-    if last - first >= DELIVERIES_MAX then fail('too many tokens are on their way') end
+    if last - first + 1 >= DELIVERIES_MAX then fail('too many tokens are on their way') end
     last = last + 1
     places[last], tokens[last] = place, token
   end
@@ -158,15 +153,8 @@ local function new()
     setTimer(id, time > s.now and time or s.now + period)
   end
 
-  local function push(queue, token, capacity, policy)
-    if queue.last - queue.first + 1 >= capacity then
-      if policy == 2 then fail('more than ' .. capacity .. ' tokens wait') end
-      queue[queue.first] = nil
-      queue.first = queue.first + 1
-    end
-    queue.last = queue.last + 1
-    queue[queue.last] = token
-  end
+  -- What a token weighs where it waits.
+  local function weight(token) return type(token) == 'table' and token.n + 1 or 1 end
 
   local function has(queue) return queue.last >= queue.first end
 
@@ -174,7 +162,21 @@ local function new()
     local token = queue[queue.first]
     queue[queue.first] = nil
     queue.first = queue.first + 1
+    queued = queued - weight(token)
     return token
+  end
+
+  local function push(queue, token, capacity, policy)
+    local weighs = weight(token)
+    if queue.last - queue.first + 1 >= capacity or queued + weighs > QUEUED_MAX then
+      if policy == 2 then fail('more than ' .. capacity .. ' tokens wait') end
+      -- The oldest one is lost, or this one if none waits.
+      if not has(queue) then return end
+      take(queue)
+    end
+    queued = queued + weighs
+    queue.last = queue.last + 1
+    queue[queue.last] = token
   end
 
   -- the program
@@ -206,7 +208,6 @@ local function new()
       tokens[first] = nil
       first = first + 1
       at = names.reactions[place]
-      count()
       reactions[place](token)
     end
     first, last = 1, 0
@@ -215,6 +216,7 @@ local function new()
   local function instant(now, polls)
     s.now, s.firings = now, 0
     fire()
+    at = nil
     if polls then poll() end
     deliver()
   end

@@ -9,7 +9,9 @@ use lang_expr::reserved::Function;
 
 pub(super) fn row(word: Word) -> Row {
     match word {
-        Word::Field => call("s->$1"),
+        // With a form of its own: no name of a program is that of a macro or of another field.
+        Word::Field => call("s->v_$1"),
+        Word::Now => call("s->now"),
         Word::Unit => call("unit()"),
         Word::Yes => call("1"),
         Word::No => call("0"),
@@ -62,9 +64,9 @@ pub(super) fn row(word: Word) -> Row {
         Word::Cancel => call("cancelTimer(s, $1)"),
         Word::Repeat => call("repeatTimer(s, $1, $2, $3)"),
         Word::IsOver => call("isOver($1, $2, $3)"),
-        Word::Push => call("push(s, &$1, 0, $2, $3, $4)"),
+        Word::Push => call("waits(s, &$1, $2, $3, $4)"),
         Word::Has => call("$1.count > 0"),
-        Word::Take => call("take(&$1)"),
+        Word::Take => call("takeWaiting(s, &$1)"),
     }
 }
 

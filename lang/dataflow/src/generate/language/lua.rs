@@ -9,6 +9,7 @@ use lang_expr::reserved::Function;
 pub(super) fn row(word: Word) -> Row {
     match word {
         Word::Field => call("s.$1"),
+        Word::Now => call("s.now"),
         Word::Unit => call("nil"),
         Word::Yes => call("true"),
         Word::No => call("false"),

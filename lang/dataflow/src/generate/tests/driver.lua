@@ -10,6 +10,7 @@ for _, name in ipairs(arg) do
     local readings = {}
     local all = {
       sensorA1 = row[1], sensorA2 = row[2], sensorD1 = row[3], accelerometer = { n = 3, [0] = row[4], row[5], row[6] },
+      encoder3 = row[7], encoder4 = row[8],
     }
     for _, input in ipairs(module.inputs) do readings[input.field] = all[input.name] end
     local good, s = pcall(step, first and 0 or 20000, readings)
