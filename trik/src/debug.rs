@@ -14,7 +14,6 @@ mod terminal;
 mod words;
 
 use crate::check::{CheckArgs, Staged, Start, model_seconds, staged};
-use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
@@ -22,7 +21,7 @@ use crate::remote::{self, debugged::Debugged};
 use clap::{Args, FromArgMatches};
 use lang_diagram::debug::order::Order;
 use lang_text::problem::Locale;
-use listing::Listing;
+use listing::{Listing, listing_of};
 use stage::Stage;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -32,7 +31,7 @@ use terminal::Terminal;
 /// What `trik debug` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DebugArgs {
-    /// The diagram, a file NAME.qrs.
+    /// The diagram, a file NAME.qrs; with --robot also a data-flow program as text, a file NAME.flow.
     pub file: PathBuf,
     #[command(flatten)]
     pub world: WorldArgs,
@@ -133,8 +132,7 @@ pub(crate) fn run(args: &DebugArgs) -> Result<u8, Refusal> {
 
 /// A person debugs a diagram on a robot.
 fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusal> {
-    let opened = must_open(&args.file, args.world.language)?;
-    let listing = Listing::of(&opened.project, args.world.language);
+    let listing = listing_of(&args.file, args.world.language)?;
     let unreachable = |error: Error| Refusal {
         code: UNREADABLE,
         ..Refusal::new(error.to_string())

@@ -448,7 +448,7 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
         };
         let mut solution = Solution::read(&job.solution, args)?;
         if solution.flow.is_some() {
-            let why = "data-flow programs are debugged on a robot: trik up, trik run NAME, trik break; trik check --explain tells where they ended";
+            let why = "data-flow programs are debugged on a robot: trik up, then trik debug --robot NAME; trik check --explain tells where they ended";
             return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
         }
         if solution.script.is_some() {

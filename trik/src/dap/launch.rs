@@ -9,7 +9,7 @@ use crate::check::Start;
 use crate::debug::WorldArgs;
 use crate::debug::listing::Listing;
 use crate::debug::stage::Stage;
-use crate::debug::target::{Changed, Target};
+use crate::debug::target::{Changed, Target, Written};
 use crate::diagrams::save::{self, must_open};
 use crate::error::Error;
 use crate::language;
@@ -230,7 +230,7 @@ impl Launch {
             Ok(opened) => opened,
             Err(refusal) => return Restart::Refused(refusal.lines.join("\n")),
         };
-        match target.change(&self.program, &opened.project) {
+        match target.change(&self.program, Written::Diagram(&opened.project)) {
             Ok(Changed::InForce(what)) => {
                 important(client, &format!("changed: {what}"));
                 *sheets = Sheets::of(opened.project, self.world.language, now);

@@ -21,12 +21,8 @@ use std::path::Path;
 /// # Errors
 /// It cannot be read.
 pub(crate) fn listing_of(file: &Path, locale: Locale) -> Result<Listing, Refusal> {
-    Ok(match must(flow::open(file), file, locale)? {
-        flow::Program::Diagram(opened) => Listing::of(&opened.project, locale),
-        flow::Program::Flow(flow, _) | flow::Program::Text(flow) => {
-            Listing::of_flow(&flow.project, locale)
-        }
-    })
+    let program = must(flow::open(file), file, locale)?;
+    Ok(Listing::of_program(&program, locale))
 }
 
 /// A diagram as lines.
@@ -40,6 +36,16 @@ pub(crate) struct Listing {
 }
 
 impl Listing {
+    /// That of a file, whatever program it has.
+    pub(crate) fn of_program(program: &flow::Program, locale: Locale) -> Self {
+        match program {
+            flow::Program::Diagram(opened) => Self::of(&opened.project, locale),
+            flow::Program::Flow(flow, _) | flow::Program::Text(flow) => {
+                Self::of_flow(&flow.project, locale)
+            }
+        }
+    }
+
     pub(crate) fn of(project: &Project, locale: Locale) -> Self {
         let lines = outline::lines(project, locale);
         let mut listing = Self {

@@ -4,7 +4,7 @@
 //! of `sim` and `lang-diagram`.
 
 use super::stops::words;
-use super::target::{Changed, Channel, Event, Target, problems};
+use super::target::{Changed, Channel, Event, Target, Written, problems};
 use crate::check::{Staged, Start};
 use crate::error::Error;
 use crate::limits;
@@ -12,7 +12,6 @@ use lang_constraint::Level;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::{Refused, Version};
-use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use serde_json::Value;
 use sim::judge::debugged::{self, Debugged};
@@ -220,8 +219,16 @@ impl Target for Stage<'_> {
         Ok(events)
     }
 
-    fn change(&mut self, _file: &Path, project: &Project) -> Result<Changed, Error> {
+    fn change(&mut self, _file: &Path, version: Written<'_>) -> Result<Changed, Error> {
         let locale = self.settings.locale;
+        let project = match version {
+            Written::Diagram(project) => project,
+            // Only diagrams come here, and one does not become the other.
+            Written::Flow(_) => {
+                let why = "it is a data-flow program now, which is debugged on a robot".to_owned();
+                return Ok(Changed::CannotBe(why));
+            }
+        };
         let version = match Version::of(project, self.world) {
             Ok(version) => version,
             Err(why) => return Ok(Changed::Wrong(problems(&why, locale))),

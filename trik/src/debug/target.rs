@@ -2,6 +2,7 @@
 //!
 //! Owns the border. Front ends (the terminal, an editor) know no more of a robot than this.
 
+use crate::diagrams::flow::Flow;
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::machine::patch::Refused;
@@ -25,11 +26,11 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
-    /// Replaces the diagram that runs by the one of a file, which goes on where it is with what it has.
+    /// Replaces the program that runs by the one of a file, which goes on where it is with what it has.
     ///
     /// # Errors
     /// The robot does not answer.
-    fn change(&mut self, file: &Path, project: &Project) -> Result<Changed, Error>;
+    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error>;
 
     /// Ends the program: motors rest.
     fn end(&mut self);
@@ -42,6 +43,15 @@ pub(crate) trait Target {
 
     /// What the world looks like at a time of the program, in a line; none if nobody knows.
     fn scene(&self, ms: u64) -> Option<String>;
+}
+
+/// A program as its file has it.
+#[derive(Clone, Copy)]
+pub(crate) enum Written<'a> {
+    /// A diagram of control flow.
+    Diagram(&'a Project),
+    /// A data-flow program.
+    Flow(&'a Flow),
 }
 
 /// What has become of a new version of a diagram.

@@ -6,9 +6,10 @@
 use super::listing::Listing;
 use super::report::{Report, State};
 use super::stops::{self, words};
-use super::target::{Changed, Channel, Event, Target, log_lines, why_not};
+use super::target::{Changed, Channel, Event, Target, Written, log_lines, why_not};
 use super::words::{ROWS, Typed, understand};
-use crate::diagrams::save::must_open;
+use crate::diagrams::flow;
+use crate::diagrams::save::must;
 use crate::error::Error;
 use crate::limits;
 use crate::terminal::harmless;
@@ -306,13 +307,17 @@ impl<'a> Terminal<'a> {
     /// The file as it is now takes the place of what runs.
     fn reload(&mut self) -> Result<(), Error> {
         let (file, locale) = &self.source;
-        let opened = match must_open(file, *locale) {
+        let opened = match must(flow::open(file), file, *locale) {
             Ok(opened) => opened,
             Err(refusal) => return self.say(&lines_of(&refusal.lines.join("\n"))),
         };
-        match self.target.change(file, &opened.project)? {
+        let version = match &opened {
+            flow::Program::Diagram(opened) => Written::Diagram(&opened.project),
+            flow::Program::Flow(flow, _) | flow::Program::Text(flow) => Written::Flow(flow),
+        };
+        match self.target.change(file, version)? {
             Changed::InForce(what) => {
-                self.listing = Listing::of(&opened.project, *locale);
+                self.listing = Listing::of_program(&opened, *locale);
                 self.says(words::changed(&harmless(&what)))?;
                 let events = self.target.turn(Duration::ZERO)?;
                 self.hear_but_states(&events)?;

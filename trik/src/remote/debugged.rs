@@ -5,13 +5,12 @@
 
 use super::link::{Link, Message, ms};
 use super::upload::Upload;
-use crate::debug::target::{Changed, Channel, Event, Target, problems, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::Version;
-use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -226,9 +225,19 @@ impl Target for Debugged {
         }
     }
 
-    fn change(&mut self, file: &Path, project: &Project) -> Result<Changed, Error> {
-        if let Err(why) = Version::of(project, World::Robot) {
-            return Ok(Changed::Wrong(problems(&why, Locale::English)));
+    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error> {
+        let mistakes = match version {
+            Written::Diagram(project) => {
+                let version = Version::of(project, World::Robot);
+                version.err().map(|why| problems(&why, Locale::English))
+            }
+            Written::Flow(flow) => {
+                let mistakes = flow.ready().err();
+                mistakes.map(|mistakes| mistakes.iter().map(|one| format!("{one}\n")).collect())
+            }
+        };
+        if let Some(mistakes) = mistakes {
+            return Ok(Changed::Wrong(mistakes));
         }
         let upload = Upload::read(file)?;
         let patch = format!("patch:{}:{}", WhenGone::Refuse.word(), upload.name);

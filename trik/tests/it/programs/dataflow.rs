@@ -164,3 +164,28 @@ fn a_data_flow_program_is_changed_watched_and_stopped_while_it_runs() {
     assert!(reachable.rests());
     drop(running);
 }
+
+#[test]
+fn a_data_flow_program_is_debugged_in_one_talk() {
+    let Some(reachable) = Reachable::new() else {
+        return;
+    };
+    let home = &reachable.robot.home;
+    let file = home.0.file("turn.flow", TURN);
+    let file = file.to_str().expect("a name in UTF-8");
+    let mut command = home.command(&["debug", file, "--robot", reachable.ip()]);
+    let typed = "break wheels\nc\nset power=30\nc\nprint power\nreload\nrn\nbreak nowhere\nq\n";
+    let said = harness::tools::run(&mut command, typed.as_bytes()).good();
+    for told in [
+        "before the first block",
+        "wheels.M3 gets 20",
+        "wheels.M3 gets 30",
+        "(trik) print power\n30\n",
+        "changed: 4 blocks kept, 0 new, 0 gone",
+        "the past of a data-flow program is not kept",
+    ] {
+        assert!(said.contains(told), "{told}: {said}");
+    }
+    // It was started for the talk, and is ended with it.
+    eventually("its motors rest", || reachable.rests());
+}
