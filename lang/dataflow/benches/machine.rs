@@ -1,18 +1,20 @@
 //! How fast tokens go: through a chain of ten functions, on one core, and how that compares to evaluating the ten
-//! expressions alone.
+//! expressions alone, and to the same chain in Node-RED.
 //!
-//! `cargo bench -p lang-dataflow --bench machine`; the best of several runs counts.
+//! `cargo bench -p lang-dataflow --bench machine`; the best of several runs counts. Node-RED is measured if `NODE_RED` names a
+//! folder `node_modules` that has it: `npm install --prefix DIR node-red`.
 
 use lang_dataflow::check::check;
 use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::trace::Deaf;
 use lang_dataflow::text;
-use lang_diagram::brick::{Brick, Command};
+use lang_diagram::brick::{self, Brick};
 use lang_diagram::machine::Status;
 use lang_diagram::ports::Port;
 use lang_expr::{Compat, Kit, Names, Outside, Source, Store, Value, Wanted};
 use std::fmt::Write;
 use std::hint::black_box;
+use std::process::Command;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -26,7 +28,7 @@ const SENSORS: usize = 20;
 struct Robot(i32);
 
 impl Brick for Robot {
-    fn command(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: brick::Command<'_>) {
         black_box(&command);
     }
 
@@ -131,6 +133,26 @@ fn expressions() -> f64 {
     took.as_secs_f64() * 1e9 / f64::from(count)
 }
 
+/// What Node-RED takes for a token that goes through a function.
+fn node_red() -> Option<f64> {
+    const TOKENS: u32 = 100_000;
+    let modules = std::env::var_os("NODE_RED")?;
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/node_red.js");
+    let run = || {
+        let output = Command::new("node")
+            .arg(script)
+            .arg(&modules)
+            .arg(TOKENS.to_string())
+            .output()
+            .expect("node");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{told}");
+        let text = String::from_utf8_lossy(&output.stdout);
+        text.trim().parse::<f64>().expect(&text)
+    };
+    Some((0..3).map(|_| run()).fold(f64::INFINITY, f64::min))
+}
+
 fn main() {
     let (blocks, alone) = (through_blocks(), expressions());
     let million = 1000.0 / blocks;
@@ -141,4 +163,11 @@ fn main() {
         "its expression alone      {alone:6.1} ns, {:.2} of that",
         alone / blocks
     );
+    match node_red() {
+        Some(other) => println!(
+            "the same in Node-RED      {other:6.1} ns, {:.1} times that",
+            other / blocks
+        ),
+        None => println!("the same in Node-RED      not measured: NODE_RED names no folder"),
+    }
 }
