@@ -35,10 +35,12 @@ const functions = {
   },
 };
 
-const node = (id, func, to) => ({ id, type: 'function', z: 'chain', name: id, func, outputs: 1, wires: [to] });
+// A node without a place counts as a configuration of others.
+const placed = { z: 'chain', x: 100, y: 100 };
+const node = (id, func, to) => ({ id, type: 'function', ...placed, name: id, func, outputs: 1, wires: [to] });
 const flow = [
   { id: 'chain', type: 'tab', label: 'chain' },
-  { id: 'start', type: 'inject', z: 'chain', once: true, onceDelay: 0.5, repeat: '', props: [{ p: 'payload' }], payload: '0', payloadType: 'num', wires: [['spread']] },
+  { id: 'start', type: 'inject', ...placed, once: true, onceDelay: 0.5, repeat: '', props: [{ p: 'payload' }], payload: '0', payloadType: 'num', wires: [['spread']] },
   // As many as a poll of twenty sensors gives, then the rest of the program has its turn.
   node(
     'spread',

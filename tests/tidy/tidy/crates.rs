@@ -200,6 +200,22 @@ fn nothing_for_the_controller_links_what_is_for_a_pc() {
     }
 }
 
+/// The controller's programs are built together without default features, and one that asks for them asks for all.
+#[test]
+fn nobody_on_the_controller_asks_for_all_that_trikfs_can() {
+    let workspace = text(&root().join("Cargo.toml"));
+    assert!(workspace.contains("trikfs = { path = \"trikfs\", default-features = false }"));
+    assert!(workspace.contains("config = { path = \"config\", default-features = false }"));
+    for folder in ["ev3dev", "trikd", "trikfs", "filters"] {
+        let manifest = text(&root().join(folder).join("Cargo.toml"));
+        let asks = manifest.lines().filter(|line| {
+            let is_of_it = line.starts_with("trikfs =") || line.starts_with("config =");
+            is_of_it && (line.contains("\"default\"") || line.contains("\"dataflow\""))
+        });
+        assert_eq!(asks.count(), 0, "{folder}/Cargo.toml");
+    }
+}
+
 #[test]
 fn libraries_behind_a_border_are_linked_by_nobody_else() {
     let mut complaints = Vec::new();
