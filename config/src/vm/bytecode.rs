@@ -58,8 +58,16 @@ impl Part {
             Self::Table => include_str!("lua/table.lua"),
             Self::Coroutine => include_str!("lua/coroutine.lua"),
             Self::Sources => include_str!("lua/sources.lua"),
-            Self::Dcml => include_str!("lua/dcml.lua"),
-            Self::Dataflow => include_str!("lua/dataflow.lua"),
+            Self::Dcml => concat!(
+                include_str!("lua/options.lua"),
+                include_str!("lua/dcml.lua")
+            ),
+            Self::Dataflow => {
+                concat!(
+                    include_str!("lua/options.lua"),
+                    include_str!("lua/dataflow.lua")
+                )
+            }
             Self::Fingerprint => include_str!("lua/fingerprint.lua"),
             Self::Permanents => include_str!("lua/permanents.lua"),
             Self::Persist => include_str!("lua/persist.lua"),

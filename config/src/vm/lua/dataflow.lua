@@ -2,31 +2,15 @@
 --
 -- Owns the options, and how tuples become readings. The program is the module that a generator made of it; chunk(name)
 -- gives its function, or nil and why.
-local _, raw, _, chunk = ...
-local error, ipairs, next, pairs, pcall = raw.error, raw.ipairs, raw.next, raw.pairs, raw.pcall
-local tostring, type = raw.tostring, raw.type
 
 -- As often as programs poll their sensors.
 local PERIOD_MS = 20
-local SIZES = { i8 = 1, u8 = 1, i16 = 2, u16 = 2, i32 = 4, u32 = 4, f32 = 4, f64 = 8 }
 local KEYS = { program = true, inputs = true, shows = true, poll_ms = true, language = true }
 local COUNT_MAX, NAME_MAX = 400, 1000
 -- Room for a program in Lua of as many blocks as it may have.
 local MEMORY_KB = 16384
 
 local function fail(text) error('dataflow: ' .. text, 0) end
-
-local function shown(value)
-  if type(value) == 'string' then return "'" .. value .. "'" end
-  return type(value) == 'number' and tostring(value) or 'a ' .. type(value)
-end
-
-local function sorted(names)
-  local list = {}
-  for name in pairs(names) do list[#list + 1] = tostring(name) end
-  table.sort(list)
-  return list
-end
 
 local function names_of(list)
   local names = {}
@@ -117,9 +101,9 @@ end
 -- The converter in Lua.
 local function runner(program, inputs, fields)
   local begin = program.new
-  local step = begin()
+  local step, readings = begin(), {}
   return function(a_s, a, b_s, b)
-    local at, readings = 0, {}
+    local at = 0
     for index = 1, #inputs do
       local input = inputs[index]
       local read, size = ba[input.kind], input.size
@@ -127,6 +111,7 @@ local function runner(program, inputs, fields)
         readings[input.field] = read(a, at)
         at = at + size
       else
+        -- A new one each time: the program may keep it.
         local list = { n = input.count }
         for item = 0, input.count - 1 do
           list[item] = read(a, at)

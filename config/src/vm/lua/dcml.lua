@@ -2,9 +2,6 @@
 --
 -- Owns the options, what each source means and the integration: one classical Runge-Kutta step of the fourth order for at
 -- most STEP_S. The model is the module that a generator made of its text; chunk(name) gives its function, or nil and why.
-local _, raw, _, chunk = ...
-local error, ipairs, next, pairs, pcall = raw.error, raw.ipairs, raw.next, raw.pairs, raw.pcall
-local tostring, type = raw.tostring, raw.type
 
 -- As often as encoders are sampled; longest step of the integration, and steps that one tuple may take.
 local PERIOD_MS, STEP_S, STEPS_MAX = 20, 0.025, 200
@@ -14,22 +11,9 @@ local DEGREE = 3.14159265358979323846 / 180
 -- turned so far was set to 0.
 local JUMP, RESET, NEAR = 10 * 360 * DEGREE, 60 * DEGREE, 4
 local PLACE = { 'x', 'y', 'theta' }
-local SIZES = { i8 = 1, u8 = 1, i16 = 2, u16 = 2, i32 = 4, u32 = 4, f32 = 4, f64 = 8 }
 local KEYS = { model = true, params = true, actions = true, heading = true, start = true, poll_ms = true }
 
 local function fail(text) error('dcml: ' .. text, 0) end
-
-local function shown(value)
-  if type(value) == 'string' then return "'" .. value .. "'" end
-  return type(value) == 'number' and tostring(value) or 'a ' .. type(value)
-end
-
-local function sorted(names)
-  local list = {}
-  for name in pairs(names) do list[#list + 1] = tostring(name) end
-  table.sort(list)
-  return list
-end
 
 local function table_of(given, key)
   local value = given[key]

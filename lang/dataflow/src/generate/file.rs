@@ -51,7 +51,6 @@ fn lines(syntax: &Syntax, steps: &[Step], depth: usize, out: &mut String) {
                 line(0, body.trim_end());
                 line(depth, syntax.end_loop);
             }
-            Step::If(_, yes, no) if yes.is_empty() && no.is_empty() => {}
             Step::If(when, yes, no) => {
                 line(depth, &fill(syntax.if_, &[when]));
                 let mut body = String::new();

@@ -320,6 +320,11 @@ impl<'a> Plan<'a> {
         field
     }
 
+    /// Whether there is no number that a node could show; known once all texts are written.
+    pub(super) fn shows_nothing(&self) -> bool {
+        self.outputs.is_empty() && self.variables.is_empty()
+    }
+
     /// The variables that the program has, by their names, and their fields.
     pub(super) fn variables(&self) -> impl Iterator<Item = (&str, &str)> {
         self.variables

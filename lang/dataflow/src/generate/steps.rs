@@ -519,6 +519,8 @@ impl Writer<'_, '_> {
         let mut steps = Vec::new();
         for id in 0..program.nodes.len() as NodeId {
             match &program.node(id).op {
+                // Nobody gets it.
+                Op::Source(Source::Sensor(_)) if program.node(id).outs[1].is_empty() => {}
                 Op::Source(Source::Sensor(sensor)) => {
                     let is_on = self.number(id, "on", 0);
                     let reading = self.field(&self.plan.reading(*sensor));

@@ -97,6 +97,13 @@ struct Case {
 /// Numbers by their names after each poll; nothing from where the program failed.
 type Shown = Vec<BTreeMap<String, f64>>;
 
+/// What a converter has shown, and why it has failed, if it has.
+#[derive(Default)]
+struct Answer {
+    shown: Shown,
+    fault: String,
+}
+
 fn good(project: &Project) -> Rc<Program> {
     let lowered = check(project);
     let told: Vec<String> = lowered.problems.iter().map(ToString::to_string).collect();
@@ -186,22 +193,25 @@ fn written(rows: &[Row]) -> String {
 }
 
 /// Lines `NAME NUMBER` with an empty line after each poll, as the drivers print them.
-fn read(text: &str) -> Shown {
-    let mut shown = Vec::new();
+fn read(text: &str) -> Answer {
+    let mut answer = Answer::default();
     let mut now = BTreeMap::new();
     for line in text.lines() {
         match line.split_once(' ') {
-            Some(("fault", _)) => break,
+            Some(("fault", why)) => {
+                answer.fault = why.to_owned();
+                break;
+            }
             Some((name, number)) => {
                 now.insert(name.to_owned(), number.parse().expect(line));
             }
-            None => shown.push(std::mem::take(&mut now)),
+            None => answer.shown.push(std::mem::take(&mut now)),
         }
     }
-    shown
+    answer
 }
 
-fn lua(cases: &[Case]) -> Vec<Shown> {
+fn lua(cases: &[Case]) -> Vec<Answer> {
     let folder = folder();
     std::fs::write(folder.path().join("driver.lua"), LUA).expect("the driver");
     let mut names = Vec::new();
@@ -228,12 +238,12 @@ fn lua(cases: &[Case]) -> Vec<Shown> {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let shown: Vec<Shown> = text.split("=\n").skip(1).map(read).collect();
-    assert_eq!(shown.len(), cases.len());
-    shown
+    let answers: Vec<Answer> = text.split("=\n").skip(1).map(read).collect();
+    assert_eq!(answers.len(), cases.len());
+    answers
 }
 
-fn c(case: &Case) -> Shown {
+fn c(case: &Case) -> Answer {
     let folder = folder();
     let mut plan = super::plan::Plan::of(&case.program, Target::C);
     let body = super::steps::body(&mut plan);
@@ -289,7 +299,8 @@ fn c(case: &Case) -> Shown {
 }
 
 /// Whole numbers to the bit, others to the last digits.
-fn agree(case: &Case, wanted: &Shown, got: &Shown, language: &str) {
+fn agree(case: &Case, wanted: &Shown, got: &Answer, language: &str) {
+    let got = &got.shown;
     assert_eq!(wanted.len(), got.len(), "{} in {language}", case.name);
     for (poll, (wanted, got)) in wanted.iter().zip(got).enumerate() {
         // Motors are told nothing at first, and a converter says 0.
@@ -442,11 +453,67 @@ fn what_has_no_place_in_a_converter_is_told_with_its_block() {
     assert_eq!(told(Target::Lua), told(Target::C));
 }
 
+/// What both languages say of a program that fails.
+fn faults(text: &str) -> Vec<String> {
+    let case = case("fails", &main_only(text));
+    let mut faults = Vec::new();
+    if needs::tool("luajit") {
+        faults.extend(
+            lua(std::slice::from_ref(&case))
+                .into_iter()
+                .map(|one| one.fault),
+        );
+    }
+    if needs::tool("gcc") {
+        faults.push(c(&case).fault);
+    }
+    faults
+}
+
 #[test]
-fn a_program_without_sensors_converts_nothing() {
+fn what_fails_names_its_block() {
+    let begin = "A Sensor {VarName=sensorA1}\nF Text programming {IO0=";
+    let end = "}\nM Motors {synch=false}\nA.OUT > F.I0\nF.O0 > M.M3";
+    for (text, told) in [
+        ("100 / (I0 - 22)", "F.I0: division by 0"),
+        ("t = {1, 2}; t[I0 - 21]", "F.I0: an index is below 0"),
+        ("I0 * 1e300 * 1e300", "M.M3: the number is too large"),
+    ] {
+        for fault in faults(&format!("{begin}{text}{end}")) {
+            assert!(fault.starts_with(told), "{text}: {fault}");
+        }
+    }
+    let keeps = "\nK Text programming {IO0=kept = I0}\nA.OUT > K.I0";
+    let runs =
+        "A Sensor {VarName=sensorA1}\nI If {condition=data > 0}\nA.OUT > I.DATA\nI.TRUE > I.DATA";
+    for fault in faults(&format!("{runs}{keeps}")) {
+        assert!(
+            fault.starts_with("I.DATA: a cycle without a wait"),
+            "{fault}"
+        );
+    }
+    for fault in faults(&format!(
+        "A Sensor {{VarName=sensorA1}}\nS Stop\nA.OUT > S.IN0{keeps}"
+    )) {
+        assert_eq!(fault, "ENODEV: the program has ended");
+    }
+    // A condition is asked also where nothing follows from it.
+    let asks = "A Sensor {VarName=sensorA1}\nI If {condition=1 / (data - 21) > 0}\nA.OUT > I.DATA";
+    for fault in faults(&format!("{asks}{keeps}")) {
+        assert!(fault.starts_with("I.DATA: division by 0"), "{fault}");
+    }
+}
+
+#[test]
+fn a_program_without_sensors_or_numbers_converts_nothing() {
     let program = good(&main_only("S Motors {M3Power=10}"));
     let problems = generate(&program, Target::Lua).expect_err("refused");
     assert!(problems[0].words.english.contains("reads no sensor"));
+    let silent = good(&main_only(
+        "A Sensor {VarName=sensorA1}\nI If\nA.OUT > I.DATA",
+    ));
+    let problems = generate(&silent, Target::C).expect_err("refused");
+    assert!(problems[0].words.english.contains("nothing to show"));
 }
 
 #[test]

@@ -62,6 +62,13 @@ pub(super) fn no_inputs() -> Words {
     )
 }
 
+pub(super) fn no_outputs() -> Words {
+    Words::new(
+        "the program drives no motor and has no variable, so there is nothing to show",
+        "программа не управляет моторами и не имеет переменных, поэтому показывать нечего",
+    )
+}
+
 pub(super) fn too_large(limit: usize) -> Words {
     Words::new(
         format!("a converter has at most {limit} blocks, those of each call counted"),

@@ -18,7 +18,7 @@ const PROGRAM: &str = "/* the program */\n";
 
 /// How the node's numbers are taken from what the program has.
 const SHOWN: &str =
-    "static int shown(struct state *s, const char *name, struct value value, double *to)
+    "static inline int shown(struct state *s, const char *name, struct value value, double *to)
 {
     if (value.kind == LIST) {
         s->at = name;
@@ -37,7 +37,7 @@ const SHOWN: &str =
 /* Writes what the node shows; 0: one of it has no value yet. */
 static int fields(struct state *s, uint8_t *out)
 {
-    double all[OUTPUTS];
+    double all[OUTPUTS + 1];
     int at = 0, is_there = 1;
 ";
 
@@ -175,7 +175,7 @@ fn outputs(plan: &Plan<'_>, out: &mut String) {
     for (_, field) in plan.variables() {
         let _ = writeln!(out, "    (void)v_{field};");
     }
-    out.push_str("    memcpy(out, all, sizeof all);\n    return is_there;\n}\n\n");
+    out.push_str("    memcpy(out, all, OUTPUT_SIZE);\n    return is_there;\n}\n\n");
 }
 
 fn restart(plan: &Plan<'_>, out: &mut String) {
