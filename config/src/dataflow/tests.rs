@@ -87,6 +87,26 @@ fn a_program_computes_from_newest_values_and_remembers() {
     assert_eq!(other.feed(4, [9.0, 9.0, 4.0], 0), Ok(vec![2.0]));
 }
 
+/// Sources stand in the order of their names, wherever a program reads them.
+#[test]
+fn a_sensor_that_only_a_text_reads_has_its_own_reading() {
+    let program = "diagram \"Sum\"
+  near: Sensor(VarName = sensorA1)
+  add: \"Text programming\"(IO0 = `angle = I0 + 100*accelerometer[1]`)
+  near.OUT -> add.I0
+";
+    let mut node = Node::of(None, &inline(program), INPUTS);
+    assert_eq!(node.feed(4, [7.0, 2.0, 9.0], 0), Ok(vec![204.0]));
+    assert_eq!(node.feed(5, [7.0, 3.0, 9.0], 20_000), Ok(vec![305.0]));
+    let alone = "diagram \"Alone\"
+  every: Loop(end_border = 1000, time = 10)
+  add: \"Text programming\"(IO0 = `angle = sensorA1 + 100*accelerometer[1] + 0*I0`)
+  every.OUT -> add.I0
+";
+    let mut node = Node::of(None, &inline(alone), INPUTS);
+    assert_eq!(node.feed(4, [7.0, 2.0, 9.0], 0), Ok(vec![204.0]));
+}
+
 #[test]
 fn what_goes_wrong_names_its_block_and_the_program_begins_anew() {
     let divides = FILTER.replace("0.25*(I0 + I1[2])", "4 / I0");

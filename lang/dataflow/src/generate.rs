@@ -17,7 +17,7 @@ mod words;
 mod tests;
 
 use crate::program::Program;
-use lang_text::problem::{Place, Problem};
+use lang_text::problem::Problem;
 
 pub use target::Target;
 
@@ -28,9 +28,7 @@ pub use target::Target;
 pub fn generate(program: &Program, target: Target) -> Result<String, Vec<Problem>> {
     let mut plan = plan::Plan::of(program, target);
     let body = steps::body(&mut plan);
-    if plan.problems.is_empty() && plan.shows_nothing() {
-        plan.problem(Place::default(), words::no_outputs());
-    }
+    plan.settle();
     if !plan.problems.is_empty() {
         return Err(plan.problems);
     }

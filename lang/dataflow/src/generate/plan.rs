@@ -37,7 +37,7 @@ pub(super) struct Plan<'a> {
     pub target: Target,
     /// The name of each node.
     pub names: Vec<String>,
-    /// Sensors in the order of their names.
+    /// Sensors; in the order of their names once all is written.
     pub inputs: Vec<SensorIndex>,
     /// What motors and servos are told.
     pub outputs: Vec<Port>,
@@ -108,7 +108,6 @@ impl<'a> Plan<'a> {
         for id in 0..program.nodes.len() as NodeId {
             plan.look_at(id);
         }
-        plan.inputs.sort_by_key(|&sensor| sensor_name(sensor));
         plan.outputs.sort_by_key(|port| port.name());
         plan.find_reacting();
         plan
@@ -250,8 +249,20 @@ impl<'a> Plan<'a> {
             .map(|(at, to)| ((to.node, to.port), at))
             .collect();
         self.reacting = all;
-        if self.inputs.is_empty() && self.problems.is_empty() {
-            self.problems.push(Problem::error(words::no_inputs()));
+    }
+
+    /// All texts are written, and so everything is known that the program reads and has: inputs stand in the order of their
+    /// names, in which the tuples of several nodes stand.
+    pub(super) fn settle(&mut self) {
+        self.inputs.sort_by_key(|&sensor| sensor_name(sensor));
+        if !self.problems.is_empty() {
+            return;
+        }
+        if self.inputs.is_empty() {
+            self.problem(Place::default(), words::no_inputs());
+        }
+        if self.outputs.is_empty() && self.variables.is_empty() {
+            self.problem(Place::default(), words::no_outputs());
         }
     }
 
@@ -318,11 +329,6 @@ impl<'a> Plan<'a> {
         self.variables.insert(name.clone(), field.clone());
         self.fields.push(Field::Value(field.clone()));
         field
-    }
-
-    /// Whether there is no number that a node could show; known once all texts are written.
-    pub(super) fn shows_nothing(&self) -> bool {
-        self.outputs.is_empty() && self.variables.is_empty()
     }
 
     /// The variables that the program has, by their names, and their fields.

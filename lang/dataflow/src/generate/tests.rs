@@ -247,6 +247,7 @@ fn c(case: &Case) -> Answer {
     let folder = folder();
     let mut plan = super::plan::Plan::of(&case.program, Target::C);
     let body = super::steps::body(&mut plan);
+    plan.settle();
     assert!(
         plan.problems.is_empty(),
         "{}: {:#?}",
