@@ -325,7 +325,7 @@ fn what_goes_wrong_is_no_text() {
 }
 
 /// What makes a folder or a file of its own below the temporary one, as a path and why `tempfile` is not for it.
-const OWN_FOLDERS: [(&str, &str); 14] = [
+const OWN_FOLDERS: [(&str, &str); 11] = [
     (
         "lang/dcml/benches/generated.rs",
         "a measured program, which stays",
@@ -352,9 +352,6 @@ const OWN_FOLDERS: [(&str, &str); 14] = [
     ),
     ("tests/needs/src/lib.rs", "the crate depends on none"),
     ("trik/benches/check.rs", "a measured folder"),
-    ("trik/src/dcml/drive/port.rs", "still by hand"),
-    ("trik/src/remote/upload.rs", "still by hand"),
-    ("trik/src/up/trikd.rs", "still by hand"),
     (
         "trikfs/src/cli/edit.rs",
         "the product: the user's text stays when it is not in force",

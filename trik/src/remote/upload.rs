@@ -173,8 +173,8 @@ mod tests {
 
     #[test]
     fn a_file_that_no_robot_takes_is_refused_here() {
-        let dir = std::env::temp_dir().join(format!("trik-upload-{}", std::process::id()));
-        std::fs::create_dir_all(&dir).expect("a directory");
+        let folder = tempfile::tempdir().expect("a directory");
+        let dir = folder.path();
         for (name, why) in [
             ("a:b.js", "':'"),
             (".hidden.js", "begins with a dot"),
@@ -187,7 +187,7 @@ mod tests {
             assert!(refusal.contains(why), "{name}: {refusal}");
         }
         assert!(
-            Upload::read(&dir)
+            Upload::read(dir)
                 .unwrap_err()
                 .to_string()
                 .contains("not a file")
@@ -201,6 +201,5 @@ mod tests {
                 .to_string()
                 .contains("longer than 256 MiB")
         );
-        std::fs::remove_dir_all(dir).expect("removed");
     }
 }

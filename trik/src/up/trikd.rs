@@ -244,11 +244,9 @@ mod tests {
             "/src/target/release/trik"
         );
         assert_eq!(own_command(built, None), "/src/target/release/trik");
-        let dir = std::env::temp_dir().join(format!("trik-own-command-{}", std::process::id()));
-        std::fs::create_dir_all(&dir).unwrap();
-        std::fs::write(dir.join("trik"), "").unwrap();
-        let found = own_command(built, Some(dir.as_os_str()));
-        std::fs::remove_dir_all(&dir).unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("trik"), "").unwrap();
+        let found = own_command(built, Some(dir.path().as_os_str()));
         assert_eq!(found, "trik");
         assert_eq!(own_command(None, None), "trik");
     }

@@ -234,12 +234,13 @@ mod tests {
 
     #[test]
     fn no_number_outside_its_range_reaches_a_motor() {
-        let tree = std::env::temp_dir().join(format!("trik-drive-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let tree = folder.path();
         let value = tree.join("motors/M3/value");
         fs::create_dir_all(value.parent().unwrap()).unwrap();
         fs::write(&value, "").unwrap();
         let actuator = Actuator::read("M3*0.5").unwrap();
-        let mut port = Driven::new(&tree, "u", actuator, 1200.0).unwrap();
+        let mut port = Driven::new(tree, "u", actuator, 1200.0).unwrap();
         let mut does = |action: f64| {
             fs::write(&value, "").unwrap();
             let done = port.apply(action, false).map_err(|why| why.to_string());
@@ -264,13 +265,12 @@ mod tests {
         let stopping = Stopping(vec![port]);
         drop(stopping);
         assert_eq!(fs::read_to_string(&value).unwrap(), "0");
-        let missing = Driven::new(&tree, "v", Actuator::read("M4").unwrap(), 1200.0).unwrap_err();
+        let missing = Driven::new(tree, "v", Actuator::read("M4").unwrap(), 1200.0).unwrap_err();
         assert!(
             missing
                 .to_string()
                 .contains("v is to be on M4, but there is no such file"),
             "{missing}"
         );
-        fs::remove_dir_all(&tree).unwrap();
     }
 }
