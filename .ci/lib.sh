@@ -36,6 +36,9 @@ end_stage() {
 summary() {
     local status=$? failed=$current
     end_stage
+    if [ "${#steps[@]}" -gt 0 ]; then
+        kill "${steps[@]}" 2>/dev/null || true
+    fi
     say "seconds of each stage"
     printf '%s\n' "${stages[@]}"
     printf '%6d  together\n' "$SECONDS"
@@ -55,6 +58,25 @@ within() {
     if [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
         echo "not finished within $minutes minutes: $*" >&2
     fi
+    return "$status"
+}
+
+# beside NAME MINUTES COMMAND...: begins a step that computes while the stages wait for robots, clocks and browsers; it gives
+# way to them. What it prints is shown where it is waited for.
+declare -A steps=()
+beside() {
+    local name=$1 minutes=$2
+    shift 2
+    nice -n 19 timeout --kill-after=20 "${minutes}m" "$@" >"$made/beside-$name.log" 2>&1 &
+    steps[$name]=$!
+}
+
+# joined NAME: waits for the end of that step, shows what it printed, and fails if it failed.
+joined() {
+    local status=0
+    wait "${steps[$1]}" || status=$?
+    unset "steps[$1]"
+    cat "$made/beside-$1.log"
     return "$status"
 }
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Tries the build for the controller on this PC, with the controller's processor emulated.
 #
-# usage: cross/test.sh [unit|mount|serve] [NAME...]
+# usage: cross/test.sh [build|unit|mount|serve] [NAME...]
 #
+#   build   only compiles what the others run
 #   unit    tests of the crates whose code depends on the processor, built for the controller
 #   mount   the programs of cross/build.sh on real mounts: the integration tests of this PC start them through
 #           binfmt_misc and speak to them over the PC's /dev/fuse; C converters are compiled for the controller
@@ -17,7 +18,7 @@ help_if_asked "$@"
 main() {
     local what=${1:-all}
     case $what in
-    unit | mount | serve) shift ;;
+    build | unit | mount | serve) shift ;;
     all) ;;
     *)
         printf 'test.sh: there are no tests %s; see --help\n' "$what" >&2
@@ -25,6 +26,12 @@ main() {
         ;;
     esac
     need_toolchain
+    if [ "$what" = build ]; then
+        "$root/cross/build.sh"
+        unit_tests --no-run
+        data_flow_tests --no-run
+        return
+    fi
     need_emulation
     export QEMU_CPU=$cpu QEMU_LD_PREFIX=$sysroot
     case $what in all | unit) unit "$@" ;; esac
@@ -32,20 +39,28 @@ main() {
     case $what in all | mount) mount_tests "$@" ;; esac
 }
 
+# Those of trikd are not among them: what it links takes longer to build than all the rest, and `serve` runs the daemon
+# itself. Optimised, because a test takes ten times as long here.
+unit_tests() {
+    CARGO_PROFILE_DEV_OPT_LEVEL=1 cross_cargo test --lib -p config -p converter -p filters -p trikfs "$@"
+}
+
+data_flow_tests() {
+    CARGO_PROFILE_DEV_OPT_LEVEL=1 cross_cargo test --lib -p lang-dataflow "$@"
+}
+
 # Interpreted instructions take some ten times as long, so the random trials are fewer.
 unit() {
+    export PROPTEST_CASES=${PROPTEST_CASES:-32}
     say "unit tests"
-    # Those of trikd are not among them: what it links takes longer to build than all the rest, and `serve` runs the
-    # daemon itself. Optimised, because a test takes ten times as long here. The template in Rust would be built for the
-    # PC. The emulator has an errno of its own for an ioctl that it does not know, and tells of a program that is missing
-    # only by its exit code.
-    CARGO_PROFILE_DEV_OPT_LEVEL=1 PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p converter -p filters -p trikfs -- \
-        --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
+    # The template in Rust would be built for the PC. The emulator has an errno of its own for an ioctl that it does not
+    # know, and tells of a program that is missing only by its exit code.
+    unit_tests -- --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
         --skip a_program_that_is_missing_is_named "$@"
     say "programs of data flow do the same here, to the letter"
     local chosen=("$@")
     [ "$#" -gt 0 ] || chosen=(machine:: debug::)
-    CARGO_PROFILE_DEV_OPT_LEVEL=1 PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p lang-dataflow -- "${chosen[@]}"
+    data_flow_tests -- "${chosen[@]}"
 }
 
 # The programs that ship, one above the other, and a client of a few lines.

@@ -76,8 +76,9 @@ fn string_functions_name_what_they_refuse() {
         fault("('x'):rep(1e9)"),
         "test.lua:1: a string of 1000000000 bytes is too long"
     );
+    // Once: it takes a million steps.
     assert_eq!(
-        fault("('a'):rep(1e5):find(('.-'):rep(20) .. 'b')"),
+        evaluated("('a'):rep(1e5):find(('.-'):rep(20) .. 'b')"),
         "test.lua:1: pattern match takes too long"
     );
     assert_eq!(
