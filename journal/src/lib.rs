@@ -6,6 +6,7 @@
 //!
 //! - `layout`: the text of a `format` file, and a tuple as numbers
 //! - `cdr`: values as bytes, and back
+//! - `chunk`: a chunk of a file, record by record
 //! - `schema`: names and texts of types
 //! - `standard`: the types of other people that are used here
 //! - `node`: one recorded node, its channel, its messages
@@ -17,6 +18,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod cdr;
+mod chunk;
 pub mod error;
 pub mod fuzz;
 pub mod layout;

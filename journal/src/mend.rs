@@ -4,10 +4,11 @@
 //! recorder writes chunks whole, so what it lost is what it had not written yet. Knows no path; the caller renames
 //! the new one over it.
 
+use crate::chunk::Chunk;
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
 use crate::write::Story;
-use mcap::records::{MessageHeader, Record};
+use mcap::records::{MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, WriteOptions};
 use std::cell::RefCell;
@@ -111,6 +112,12 @@ enum Stop {
     Disk(Error),
 }
 
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Damage(error)
+    }
+}
+
 struct Target<W: Write + Seek> {
     /// From the header on.
     out: Option<mcap::Writer<W>>,
@@ -151,9 +158,7 @@ impl<W: Write + Seek> Target<W> {
     ) -> Result<(), Error> {
         let options = LinearReaderOptions::default()
             .with_skip_end_magic(true)
-            .with_validate_chunk_crcs(true)
-            // Else messages of a damaged chunk would come before anybody knows that they are none.
-            .with_prevalidate_chunk_crcs(true)
+            .with_emit_chunks(true)
             .with_record_length_limit(RECORD_BYTES_MAX);
         let mut reader = LinearReader::new_with_options(options);
         self.is_begun = false;
@@ -166,7 +171,7 @@ impl<W: Write + Seek> Target<W> {
                     reader.notify_read(read);
                 }
                 Ok(LinearReadEvent::Record { opcode, data }) => {
-                    match self.take(opcode, data, saved, is_wanted) {
+                    match self.take_whole(opcode, data, saved, is_wanted) {
                         Ok(true) => {}
                         Ok(false) => break,
                         Err(Stop::Damage(error)) => {
@@ -218,6 +223,24 @@ impl<W: Write + Seek> Target<W> {
         Ok(())
     }
 
+    /// Copies a record, or those of a chunk. False after the last that is copied.
+    fn take_whole(
+        &mut self,
+        opcode: u8,
+        data: &[u8],
+        saved: &mut Saved,
+        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
+    ) -> Result<bool, Stop> {
+        if opcode != op::CHUNK {
+            return self.take(opcode, data, saved, is_wanted);
+        }
+        let chunk = Chunk::of(data).map_err(Stop::Damage)?;
+        chunk.each(|opcode, data| match opcode {
+            op::CHUNK => Err(Error::Damaged("a chunk in a chunk".to_owned()).into()),
+            _ => self.take(opcode, data, saved, is_wanted),
+        })
+    }
+
     /// Copies a record. False after the last that is copied.
     fn take(
         &mut self,
@@ -229,7 +252,7 @@ impl<W: Write + Seek> Target<W> {
         let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
         // The library takes four bytes off an attachment that it has not looked for.
-        if opcode == mcap::records::op::ATTACHMENT && !holds_an_attachment(data) {
+        if opcode == op::ATTACHMENT && !holds_an_attachment(data) {
             return Err(Stop::Damage(Error::Damaged("an attachment".to_owned())));
         }
         let record = mcap::parse_record(opcode, data).map_err(damage)?;
@@ -284,7 +307,7 @@ impl<W: Write + Seek> Target<W> {
             Record::Metadata(metadata) => out.write_metadata(&metadata).map_err(disk)?,
             // The summary begins, which is made anew.
             Record::DataEnd(_) | Record::Footer(_) => return Ok(false),
-            // Indexes are made anew; chunks were taken apart by the reader; what is unknown has no meaning here.
+            // Indexes are made anew; chunks were taken apart; what is unknown has no meaning here.
             Record::Header(_)
             | Record::Chunk { .. }
             | Record::MessageIndex(_)
