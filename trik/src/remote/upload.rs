@@ -174,7 +174,9 @@ mod tests {
     #[test]
     fn a_file_that_no_robot_takes_is_refused_here() {
         let folder = tempfile::tempdir().expect("a directory");
-        let dir = folder.path();
+        // The name of the temporary one begins with a dot.
+        let dir = folder.path().join("programs");
+        std::fs::create_dir(&dir).expect("a directory");
         for (name, why) in [
             ("a:b.js", "':'"),
             (".hidden.js", "begins with a dot"),
@@ -187,7 +189,7 @@ mod tests {
             assert!(refusal.contains(why), "{name}: {refusal}");
         }
         assert!(
-            Upload::read(dir)
+            Upload::read(&dir)
                 .unwrap_err()
                 .to_string()
                 .contains("not a file")
