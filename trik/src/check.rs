@@ -33,7 +33,7 @@ use lang_text::problem::Locale;
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
-pub(crate) use run::{Staged, Start, staged};
+pub(crate) use run::{Ready, Staged, Start, staged};
 use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
-//! `trik debug`: a debugger for diagrams, forwards and backwards, in a terminal.
+//! `trik debug`: a debugger for diagrams, forwards and backwards, and for data-flow programs, in a terminal.
 //!
 //! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process, one in the network is
-//! in `remote::debugged`; `terminal` talks to a
-//! person, `stops` says where it is stopped, `listing` is the diagram as text, `words` what can be typed, `told` what comes back. The debugger itself is in
-//! `lang_diagram::debug`.
+//! in `remote::debugged`; `terminal` talks to a person, `stops` says where it is stopped, `listing` is the program as text,
+//! `words` what can be typed, `report` what comes back. The debuggers themselves are in `lang_diagram::debug` and
+//! `lang_dataflow::debug`.
 
 pub(crate) mod listing;
 pub(crate) mod report;
@@ -13,7 +13,7 @@ pub(crate) mod target;
 mod terminal;
 mod words;
 
-use crate::check::{CheckArgs, Staged, Start, model_seconds, staged};
+use crate::check::{CheckArgs, Ready, Staged, Start, model_seconds, staged};
 use crate::error::Error;
 use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
@@ -31,7 +31,7 @@ use terminal::Terminal;
 /// What `trik debug` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DebugArgs {
-    /// The diagram, a file NAME.qrs; with --robot also a data-flow program as text, a file NAME.flow.
+    /// The diagram, a file NAME.qrs, or a data-flow program as text, a file NAME.flow.
     pub file: PathBuf,
     #[command(flatten)]
     pub world: WorldArgs,
@@ -68,7 +68,7 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
     /// How many times faster than real time the program runs [default: as fast as can be].
-    #[arg(long, value_name = "TIMES", value_parser = speed)]
+    #[arg(long, value_name = "FACTOR", value_parser = speed)]
     pub speed: Option<f64>,
     /// Language of messages and of the text of the diagram: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
@@ -118,7 +118,7 @@ impl WorldArgs {
     }
 }
 
-/// Debugs a diagram in a simulated world.
+/// Debugs a program in a simulated world.
 ///
 /// # Errors
 /// It cannot run, or the terminal is gone.
@@ -159,11 +159,20 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
 /// The terminal is gone.
 pub(crate) fn talk(staged: &Staged, speed: Option<f64>, start: Start) -> Result<u8, Refusal> {
     say(&staged.strange);
-    let listing = Listing::of(&staged.project, staged.settings.locale);
+    let listing = listing(staged);
     let mut stage = Stage::of(staged, start).at_speed(speed);
     let file = staged.file.clone();
     Terminal::new(&mut stage, listing, (file, staged.settings.locale)).run()?;
     Ok(0)
+}
+
+/// The text of a program that is ready to run.
+pub(crate) fn listing(staged: &Staged) -> Listing {
+    let locale = staged.settings.locale;
+    match &staged.program {
+        Ready::Diagram(project, _) => Listing::of(project, locale),
+        Ready::Flow(flow, _) => Listing::of_flow(&flow.project, locale),
+    }
 }
 
 /// Lines that say why a diagram cannot run.

@@ -40,6 +40,17 @@ pub const MAIL_MAX: usize = 100;
 pub const PIECES_MAX: usize = 4096;
 /// Blocks of a cycle that a message names.
 pub const NAMED_MAX: usize = 8;
+/// Names of a list in a message.
+pub const LISTED_MAX: usize = 20;
+/// Characters of a text that a message repeats.
+pub const REPEATED_MAX: usize = 60;
+/// How often types and periods are handed on along edges; at the end of a chain that is longer in the wrong order they stay
+/// unknown.
+pub const PASSES_MAX: usize = 12;
+/// Pairs of blocks that are looked at for one motor.
+pub const WRITER_PAIRS_MAX: usize = 64;
+/// Reactions before the limit of an instant from which the blocks are remembered that may be a cycle.
+pub const REMEMBERED_MAX: u32 = 64;
 /// Bytes of a program as text.
 pub const SOURCE_BYTES_MAX: usize = 32 << 20;
 /// Diagrams of a program as text.

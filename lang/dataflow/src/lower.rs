@@ -10,7 +10,9 @@ pub(crate) use properties::{DATA, INPUTS, chosen, color};
 
 use crate::blocks::{Direction, Does, Kind, Row};
 use crate::limits;
-use crate::program::{Act, Flow, Instance, Node, NodeId, Op, Program, Queue, Target, Text};
+use crate::program::{
+    Act, Flow, Gathers, Instance, Node, NodeId, Op, Program, Queue, Target, Text,
+};
 use crate::project::{Block, Diagram, DiagramKind, Edge, End, Policy, Project};
 use crate::words;
 use lang_expr::Kit;
@@ -475,12 +477,57 @@ fn edge_place(diagram: &Diagram, edge: &Edge) -> Place {
 impl Node {
     /// Whether it fires only when all its linked data inputs have tokens.
     pub fn waits(&self) -> bool {
+        self.gathers().is_some()
+    }
+
+    /// What it does when all its linked data inputs have tokens; none: it reacts to each token by itself.
+    pub fn gathers(&self) -> Option<Gathers<'_>> {
         match &self.op {
-            Op::Flow(Flow::Function { waits, .. }) | Op::Act(Act::Drive { waits, .. }) => {
-                *waits && self.data != 0
-            }
-            Op::Flow(Flow::Zip) => true,
-            Op::Flow(_) | Op::Source(_) | Op::Act(_) => false,
+            Op::Flow(flow) => match flow {
+                Flow::Function { waits, texts } => {
+                    (*waits && self.data != 0).then_some(Gathers::Function(texts))
+                }
+                Flow::Zip => Some(Gathers::Zip),
+                Flow::Stop
+                | Flow::If(_)
+                | Flow::Switch { .. }
+                | Flow::Loop { .. }
+                | Flow::Call(_)
+                | Flow::InPort
+                | Flow::OutPort(_)
+                | Flow::Constant(_)
+                | Flow::Variable { .. }
+                | Flow::Random { .. }
+                | Flow::Filter { .. }
+                | Flow::Wait(_)
+                | Flow::Replace(_)
+                | Flow::Inhibit(_)
+                | Flow::Unzip => None,
+            },
+            Op::Source(_) => None,
+            Op::Act(act) => match act {
+                Act::Drive { waits, devices } => {
+                    (*waits && self.data != 0).then_some(Gathers::Drive(devices))
+                }
+                Act::WritePort { .. }
+                | Act::ReadPort(_)
+                | Act::Led(_)
+                | Act::Say(_)
+                | Act::Sound(_)
+                | Act::System { .. }
+                | Act::Stream
+                | Act::StartCamera(_)
+                | Act::Send { .. }
+                | Act::WriteFile { .. }
+                | Act::ReadFile { .. }
+                | Act::RemoveFile(_)
+                | Act::Pen { .. }
+                | Act::Paint { .. }
+                | Act::Print { .. }
+                | Act::Clear
+                | Act::Smile(_)
+                | Act::Draw { .. } => None,
+            },
         }
     }
 }

@@ -44,8 +44,6 @@ use trace::Trace;
 pub const POLL_MS: u32 = 20;
 /// The furthest that a servo is sent; each clamps to what it can do.
 pub(crate) const SERVO_DEGREES: i32 = 360;
-/// Firings before the limit from which the blocks are remembered that may be a cycle.
-const REMEMBERED: u32 = 64;
 
 /// A program that runs.
 #[derive(Clone, Debug)]
@@ -76,6 +74,8 @@ pub struct Machine {
     now: u32,
     /// Whether it is stopped within an instant, or goes on in one.
     is_amid: bool,
+    /// Whether it was stopped after the last step: then the time until the next one is none of its time.
+    was_stopped: bool,
     stops: Stops,
     firings: u32,
     /// The last blocks before the limit.
@@ -135,6 +135,7 @@ impl Machine {
             asked: 0,
             now: 0,
             is_amid: false,
+            was_stopped: false,
             stops: Stops::default(),
             firings: 0,
             suspects: Vec::new(),
@@ -150,11 +151,11 @@ impl Machine {
     /// stopped, its time stands still.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Status {
         let passed = now.saturating_sub(std::mem::replace(&mut self.asked, now));
+        if self.was_stopped {
+            self.began = self.began.map(|began| began.saturating_add(passed));
+        }
         if !self.is_amid && self.ended.is_none() {
             self.stops.pause_now();
-        }
-        if self.is_amid || self.stopped().is_some() {
-            self.began = self.began.map(|began| began.saturating_add(passed));
         }
         if self.stopped().is_none() && self.ended.is_none() {
             let program = self.program.clone();
@@ -169,6 +170,7 @@ impl Machine {
             };
             self.conclude(outcome, env);
         }
+        self.was_stopped = self.stopped().is_some();
         self.status()
     }
 
@@ -460,7 +462,7 @@ impl Machine {
     fn count(&mut self, id: NodeId, env: &mut Env<'_>) -> Result<(), Halt> {
         self.firings += 1;
         env.trace.fired(self.now, id);
-        if self.firings + REMEMBERED > limits::FIRINGS_MAX {
+        if self.firings + limits::REMEMBERED_MAX > limits::FIRINGS_MAX {
             if !self.suspects.contains(&id) {
                 self.suspects.push(id);
             }

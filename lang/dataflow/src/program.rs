@@ -195,6 +195,17 @@ pub enum Flow {
     Unzip,
 }
 
+/// What a node does that waits for a token at each of its linked data inputs.
+#[derive(Clone, Copy, Debug)]
+pub enum Gathers<'a> {
+    /// Computes its texts.
+    Function(&'a [Option<Formula>; 6]),
+    /// Tells its devices.
+    Drive(&'a [(Port, i32); 4]),
+    /// Makes a pair.
+    Zip,
+}
+
 /// A node that gives readings from its start on.
 #[derive(Clone, Debug)]
 pub enum Source {

@@ -3,24 +3,25 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 use crate::blocks::Direction;
+use crate::limits::{LISTED_MAX, REPEATED_MAX};
 use lang_text::near;
 use lang_text::problem::Words;
-
-/// Names that a list is cut at.
-const LISTED: usize = 20;
 
 /// Names as a list, which is cut.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.into_iter().collect();
-    let more = if names.len() > LISTED { ", ..." } else { "" };
-    let shown = &names[..names.len().min(LISTED)];
+    let more = if names.len() > LISTED_MAX {
+        ", ..."
+    } else {
+        ""
+    };
+    let shown = &names[..names.len().min(LISTED_MAX)];
     format!("{}{more}", shown.join(", "))
 }
 
 /// The beginning of a text that may be very long.
 pub(crate) fn short(text: &str) -> String {
-    const SHOWN: usize = 60;
-    let mut shown: String = text.chars().take(SHOWN).collect();
+    let mut shown: String = text.chars().take(REPEATED_MAX).collect();
     if shown.len() < text.len() {
         shown.push_str("...");
     }

@@ -1,9 +1,11 @@
 //! A data-flow program under judgement.
 //!
-//! Owns the border between the judge and the machine of `lang_dataflow`. Knows no rules.
+//! Owns the border between the judge and the machine of `lang_dataflow`, which has a debugger's desk about it. Knows no rules
+//! and no orders.
 
 use super::program::{Program, Running, Spot};
 use super::track::Group;
+use lang_dataflow::debug::Desk;
 use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::trace::{Deaf, Trace};
 use lang_dataflow::program::{NodeId, Program as Lowered};
@@ -15,7 +17,7 @@ use std::rc::Rc;
 /// A data-flow program. It has no threads: what it did last is the block that reacted last.
 #[derive(Debug)]
 pub struct Dataflow {
-    machine: Machine,
+    desk: Desk,
     last: Last,
 }
 
@@ -30,50 +32,68 @@ impl Trace for Last {
 }
 
 impl Dataflow {
-    /// Before its first instant.
-    pub fn new(program: Rc<Lowered>) -> Self {
+    /// Before its first instant. `locale` is that of a debugger, if one comes.
+    pub fn new(program: Rc<Lowered>, locale: Locale) -> Self {
         Self {
-            machine: Machine::new(program),
+            desk: Desk::new(Machine::new(program), locale),
             last: Last::default(),
         }
+    }
+
+    /// Takes orders while the program is not in a step.
+    pub(super) fn desk(&mut self) -> &mut Desk {
+        &mut self.desk
+    }
+
+    fn machine(&self) -> &Machine {
+        self.desk.machine()
+    }
+
+    /// Milliseconds of its time.
+    pub(super) fn now(&self) -> u32 {
+        self.machine().now()
     }
 }
 
 impl Program for Dataflow {
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status {
-        self.machine.step(now_ms, robot, &mut self.last)
+        self.desk.step(now_ms, robot, &mut self.last)
+    }
+
+    fn is_held(&self) -> bool {
+        self.desk.is_stopped()
     }
 
     fn stop(&mut self, robot: &mut dyn Brick) {
-        self.machine.stop(robot, &mut Deaf);
+        self.desk.stop(robot, &mut Deaf);
     }
 
     fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
         if let Some(id) = self.last.0 {
-            let row = self.machine.program().node(id).row;
+            let row = self.machine().program().node(id).row;
             tell(Group::Block, "flow", row.shown_in(locale));
         }
-        for (name, value) in self.machine.variables() {
+        for (name, value) in self.machine().variables() {
             tell(Group::Variable, name, &value.brief());
         }
     }
 
     fn errors(&self) -> &[Problem] {
-        self.machine.errors()
+        self.machine().errors()
     }
 
     fn warnings(&self) -> &[Problem] {
-        self.machine.warnings()
+        self.machine().warnings()
     }
 
     fn running(&self) -> Vec<Running> {
-        let program = self.machine.program();
+        let program = self.machine().program();
         let at = self.last.0.map(|id| {
             let node = program.node(id);
             let instance = program.instances.get(node.instance as usize);
             Running {
                 thread: "flow".to_owned(),
-                ended_ms: match self.machine.status() {
+                ended_ms: match self.machine().status() {
                     Status::Running => None,
                     Status::Ended { at, .. } => Some(at),
                 },

@@ -395,11 +395,8 @@ impl Solution {
             return script::open(*language, text, given).map_err(|why| line(why).into());
         }
         if let Some(flow) = &self.flow {
-            let refused = |problems: Vec<Problem>| {
-                Refused::broken(lines(&self.file, &problems, args.language))
-            };
-            let program = flow.ready().map_err(refused)?;
-            return Ok(Box::new(judge::Dataflow::new(program)));
+            let program = ready(flow, &self.file, args)?;
+            return Ok(Box::new(judge::Dataflow::new(program, args.language)));
         }
         let diagram = Diagram::new(self.diagram(task, args)?);
         Ok(Box::new(match args.explain {
@@ -407,6 +404,16 @@ impl Solution {
             false => diagram,
         }))
     }
+}
+
+/// A data-flow program without mistakes.
+fn ready(
+    flow: &Flow,
+    file: &Path,
+    args: &CheckArgs,
+) -> Result<Rc<lang_dataflow::program::Program>, Refused> {
+    let ready = flow.ready();
+    ready.map_err(|problems| Refused::broken(lines(file, &problems, args.language)))
 }
 
 /// How a program that is debugged begins.
@@ -418,12 +425,11 @@ pub(crate) enum Start {
     Running,
 }
 
-/// A diagram that is ready to run in its world, for a caller that runs it tick by tick.
+/// A program of blocks that is ready to run in its world, for a caller that runs it tick by tick.
 pub(crate) struct Staged {
     pub file: PathBuf,
-    pub project: Project,
-    pub program: Rc<Lowered>,
-    /// In which it was lowered.
+    pub program: Ready,
+    /// In which a diagram is lowered.
     pub world: World,
     pub task: Task,
     pub settings: Settings,
@@ -431,10 +437,18 @@ pub(crate) struct Staged {
     pub strange: Lines,
 }
 
-/// The only diagram of the arguments, ready to run.
+/// A program as people see it, and as it runs.
+pub(crate) enum Ready {
+    /// A diagram of control flow.
+    Diagram(Box<Project>, Rc<Lowered>),
+    /// A data-flow program.
+    Flow(Flow, Rc<lang_dataflow::program::Program>),
+}
+
+/// The only program of the arguments, ready to run.
 ///
 /// # Errors
-/// Lines that say why it cannot run: it is no diagram, or it, its world or its rules are broken.
+/// Lines that say why it cannot run: it has no blocks, or it, its world or its rules are broken.
 pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
     let jobs = jobs(args).map_err(line)?;
     let [job] = &jobs[..] else {
@@ -447,19 +461,23 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
             ..settings(args).map_err(line)?
         };
         let mut solution = Solution::read(&job.solution, args)?;
-        if solution.flow.is_some() {
-            let why = "data-flow programs are debugged on a robot: trik up, then trik debug --robot NAME; trik check --explain tells where they ended";
-            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
-        }
         if solution.script.is_some() {
             let why = "only diagrams have blocks to stop at; a program in Python is debugged by its own tools";
             return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
         }
         let (mut task, strange) = solution.task(job, args)?;
-        let program = solution.diagram(&mut task, args)?;
+        let program = match solution.flow.take() {
+            Some(flow) => {
+                let program = ready(&flow, &job.solution, args)?;
+                Ready::Flow(flow, program)
+            }
+            None => {
+                let program = solution.diagram(&mut task, args)?;
+                Ready::Diagram(Box::new(solution.project), program)
+            }
+        };
         Ok(Staged {
             file: job.solution.clone(),
-            project: solution.project,
             program,
             world: world(args),
             task,

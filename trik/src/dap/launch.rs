@@ -1,4 +1,4 @@
-//! What an editor wants to debug: a diagram in a simulated world, or on a robot.
+//! What an editor wants to debug: a diagram or a data-flow program, in a simulated world or on a robot.
 //!
 //! Owns the keys of `launch` and `attach`, and how a program begins, again and again if the editor restarts it.
 
@@ -6,16 +6,17 @@ use super::client::{Client, Refused, Request};
 use super::points::Points;
 use super::session::{After, Begins, Session};
 use crate::check::Start;
-use crate::debug::WorldArgs;
 use crate::debug::listing::Listing;
 use crate::debug::stage::Stage;
 use crate::debug::target::{Changed, Target, Written};
-use crate::diagrams::save::{self, must_open};
+use crate::debug::{WorldArgs, listing};
+use crate::diagrams::flow::{self, Program};
+use crate::diagrams::save::{self, must};
 use crate::error::Error;
 use crate::language;
+use crate::refusal::Refusal;
 use crate::remote::debugged::Debugged;
 use crate::remote::target::{Target as Place, target as place, the_one};
-use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -57,7 +58,7 @@ impl Launch {
 
     fn understood(request: &Request) -> Result<Self, Refused> {
         let program = request.text("program");
-        let why = "\"program\" is needed: the path of a diagram NAME.qrs";
+        let why = "\"program\" is needed: the path of a diagram NAME.qrs or of a data-flow program NAME.flow";
         let program = program.ok_or_else(|| Refused::new(why))?;
         let is_joining = request.command == "attach";
         let robot = match request.text("robot") {
@@ -137,7 +138,10 @@ impl Launch {
             important(client, line);
         }
         let mut stage = Stage::of(&staged, Start::Stopped).at_speed(self.world.speed);
-        let sheets = Sheets::of(staged.project.clone(), staged.settings.locale, seen);
+        let sheets = Sheets {
+            listing: listing(&staged),
+            seen,
+        };
         self.talk(client, &mut stage, sheets, points)
     }
 
@@ -150,7 +154,7 @@ impl Launch {
         points: (&mut Points, bool),
     ) -> Next {
         let seen = save::bytes(&self.program).ok();
-        let opened = match must_open(&self.program, self.world.language) {
+        let opened = match self.opened() {
             Ok(opened) => opened,
             Err(refusal) => {
                 client.answer(request, Err(Refused(refusal.lines.join("\n"))));
@@ -169,10 +173,19 @@ impl Launch {
             }
         };
         client.answer(request, Ok(Value::Null));
-        let sheets = Sheets::of(opened.project, self.world.language, seen);
+        let sheets = Sheets::of(&opened, self.world.language, seen);
         let next = self.talk(client, &mut target, sheets, points);
         target.close();
         next
+    }
+
+    /// The file as it is now.
+    fn opened(&self) -> Result<Program, Refusal> {
+        must(
+            flow::open(&self.program),
+            &self.program,
+            self.world.language,
+        )
     }
 
     /// A talk about one run, whose program may become another version on the way.
@@ -226,14 +239,14 @@ impl Launch {
                 false => Restart::Anew,
             };
         }
-        let opened = match must_open(&self.program, self.world.language) {
+        let opened = match self.opened() {
             Ok(opened) => opened,
             Err(refusal) => return Restart::Refused(refusal.lines.join("\n")),
         };
-        match target.change(&self.program, Written::Diagram(&opened.project)) {
+        match target.change(&self.program, Written::of(&opened)) {
             Ok(Changed::InForce(what)) => {
                 important(client, &format!("changed: {what}"));
-                *sheets = Sheets::of(opened.project, self.world.language, now);
+                *sheets = Sheets::of(&opened, self.world.language, now);
                 Restart::Changed
             }
             Ok(Changed::Wrong(why)) => {
@@ -257,7 +270,7 @@ impl Launch {
     ) -> Result<After, Error> {
         let name = self.program.file_name().unwrap_or_default();
         let name = format!("{}.txt", name.to_string_lossy());
-        let shown = (&sheets.listing, &sheets.project, name);
+        let shown = (&sheets.listing, name);
         Session::new(client, target, shown, (points, is_over), self).run(begins)
     }
 }
@@ -274,19 +287,17 @@ enum Restart {
     Anew,
 }
 
-/// The diagram that runs.
+/// The program that runs.
 struct Sheets {
     listing: Listing,
-    project: Project,
     /// Its file when it was read, to see whether it has changed.
     seen: Option<Vec<u8>>,
 }
 
 impl Sheets {
-    fn of(project: Project, locale: Locale, seen: Option<Vec<u8>>) -> Self {
+    fn of(program: &Program, locale: Locale, seen: Option<Vec<u8>>) -> Self {
         Self {
-            listing: Listing::of(&project, locale),
-            project,
+            listing: Listing::of_program(program, locale),
             seen,
         }
     }

@@ -7,7 +7,6 @@ use crate::debug::target::{Target, why_not};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Breakpoint, Spot};
-use lang_diagram::project::Project;
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -101,7 +100,7 @@ impl Points {
         &mut self,
         kind: Kind,
         wanted: &[Value],
-        (listing, project): (&Listing, &Project),
+        listing: &Listing,
         target: &mut dyn Target,
     ) -> Result<Value, Error> {
         let (gone, kept) = std::mem::take(&mut self.set)
@@ -116,7 +115,7 @@ impl Points {
         }
         let mut told = Vec::new();
         for one in wanted {
-            told.push(self.add(kind, one, (listing, project), target)?);
+            told.push(self.add(kind, one, listing, target)?);
         }
         Ok(json!({ "breakpoints": told }))
     }
@@ -125,7 +124,7 @@ impl Points {
         &mut self,
         kind: Kind,
         one: &Value,
-        (listing, project): (&Listing, &Project),
+        listing: &Listing,
         target: &mut dyn Target,
     ) -> Result<Value, Error> {
         let line = one.get("line").and_then(Value::as_u64);
@@ -143,7 +142,7 @@ impl Points {
         let before = |blocks: Vec<Box<str>>| blocks.into_iter().map(Spot::Block).collect();
         let spots: Vec<Spot> = match kind {
             Kind::Line => before(listing.blocks(line).first().cloned().into_iter().collect()),
-            Kind::Name => before(named(project, &text(one, "name"))),
+            Kind::Name => before(listing.named(&text(one, "name"))),
             Kind::Id => {
                 let id = text(one, "instructionReference");
                 before(listing.has(&id).then_some(id).into_iter().collect())
@@ -214,19 +213,4 @@ impl Points {
         });
         places.collect()
     }
-}
-
-/// The blocks that a name means: where a subprogram begins, or all of a type.
-fn named(project: &Project, name: &str) -> Vec<Box<str>> {
-    let sheets = project.diagrams.iter();
-    let subprograms = sheets.clone().filter(|sheet| sheet.name == name);
-    let begins = subprograms.flat_map(|sheet| &sheet.blocks);
-    let begins = begins.filter(|block| block.kind == "InitialNode");
-    let of_type = sheets
-        .flat_map(|sheet| &sheet.blocks)
-        .filter(|block| block.kind == name);
-    begins
-        .chain(of_type)
-        .map(|block| block.id.as_str().into())
-        .collect()
 }

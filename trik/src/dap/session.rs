@@ -9,11 +9,11 @@ use super::points::{Kind, Points};
 use super::view;
 use crate::debug::listing::Listing;
 use crate::debug::report::{Report, State};
+use crate::debug::stops::words;
 use crate::debug::target::{Channel, Event, Target, log_lines, why_not};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Step};
-use lang_diagram::project::Project;
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -107,7 +107,6 @@ pub(super) struct Session<'a> {
     client: &'a mut Client,
     target: &'a mut dyn Target,
     listing: &'a Listing,
-    project: &'a Project,
     name: String,
     points: &'a mut Points,
     told: Report,
@@ -122,7 +121,7 @@ impl<'a> Session<'a> {
     pub fn new(
         client: &'a mut Client,
         target: &'a mut dyn Target,
-        (listing, project, name): (&'a Listing, &'a Project, String),
+        (listing, name): (&'a Listing, String),
         (points, is_over): (&'a mut Points, bool),
         launch: &'a Launch,
     ) -> Self {
@@ -130,7 +129,6 @@ impl<'a> Session<'a> {
             client,
             target,
             listing,
-            project,
             name,
             points,
             told: Report::default(),
@@ -318,9 +316,14 @@ impl<'a> Session<'a> {
             "step" | "thread ended" => "step",
             _ => "pause",
         };
-        let text = match stop.change {
-            Some(change) => change.sentence(self.launch.locale()),
-            None => stop.text,
+        let token = stop.at.and_then(|at| at.token);
+        let text = match (stop.change, token) {
+            (Some(change), _) => change.sentence(self.launch.locale()),
+            (None, Some(token)) if stop.text.is_empty() => {
+                let what = words::token(&token.full_name(), &token.value);
+                words::said(self.launch.locale(), what).trim().to_owned()
+            }
+            (None, _) => stop.text,
         };
         self.stopped(reason, (!text.is_empty()).then_some(text));
     }
@@ -328,11 +331,8 @@ impl<'a> Session<'a> {
     fn stopped(&mut self, reason: &str, text: Option<String>) {
         let stop = self.told.stop.clone().unwrap_or_default();
         let mut body = json!({"reason": reason, "allThreadsStopped": true});
-        if let Some(thread) = stop
-            .thread
-            .or(self.told.thread().map(|thread| thread.number))
-        {
-            body["threadId"] = json!(view::thread_id(thread));
+        if let Some(thread) = view::stopped_thread(&self.told) {
+            body["threadId"] = json!(thread);
         }
         if let Some(number) = stop.number {
             body["hitBreakpointIds"] = json!([number]);
@@ -470,9 +470,9 @@ impl<'a> Session<'a> {
     }
 
     fn answer(&mut self, request: &Request) -> Result<Result<Value, Refused>, Error> {
-        let sheets = (self.listing, self.project);
+        let listing = self.listing;
         let set = |session: &mut Self, kind, items| {
-            session.points.set(kind, items, sheets, session.target)
+            session.points.set(kind, items, listing, session.target)
         };
         Ok(Ok(match request.command.as_str() {
             "setBreakpoints" => {
@@ -489,7 +489,13 @@ impl<'a> Session<'a> {
                 let filters = request.items("filters");
                 let is_wanted = filters.iter().any(|filter| filter == "errors");
                 self.points.stops_at_errors = is_wanted;
-                return Ok(self.order(&Order::Errors(is_wanted))?.map(|_| Value::Null));
+                // An editor asks for it by itself, so that no is an answer and no error.
+                return Ok(Ok(match self.order(&Order::Errors(is_wanted))? {
+                    Ok(_) => Value::Null,
+                    Err(Refused(why)) => {
+                        json!({"breakpoints": [{"verified": false, "message": why}]})
+                    }
+                }));
             }
             "threads" => view::threads(&self.told),
             "stackTrace" => {
@@ -500,7 +506,7 @@ impl<'a> Session<'a> {
                 let id = request.number("threadId").unwrap_or(0);
                 view::stack(&self.told, id, window, self.listing, &self.name)
             }
-            "scopes" => view::scopes(),
+            "scopes" => view::scopes(&self.told),
             "variables" => {
                 let _ = self.order(&Order::Look)?;
                 let reference = request.number("variablesReference").unwrap_or(0);

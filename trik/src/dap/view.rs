@@ -3,7 +3,7 @@
 //! Owns the numbers by which it asks for them. They are good until the program goes on.
 
 use crate::debug::listing::Listing;
-use crate::debug::report::{At, Report};
+use crate::debug::report::{At, Report, State};
 use crate::debug::target::{Target, why_not};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
@@ -16,6 +16,8 @@ pub(super) const SOURCE: u64 = 1;
 const VARIABLES: u64 = 1;
 /// The readings that it knows.
 const SENSORS: u64 = 2;
+/// Of a data-flow program: the last token of each port.
+const PORTS: u64 = 3;
 /// Frames of one thread.
 const FRAMES: u64 = 10_000;
 
@@ -29,12 +31,28 @@ pub(super) fn thread_of(id: u64) -> u64 {
     id.saturating_sub(1)
 }
 
+/// Whether a program stops and steps as a whole: a data-flow program, which is shown as one thread because editors know
+/// nothing else.
+fn is_whole(told: &Report) -> bool {
+    told.threads.is_empty() && told.state != State::Ended
+}
+
 pub(super) fn threads(told: &Report) -> Value {
     let threads = told.threads.iter();
-    let threads: Vec<Value> = threads
+    let mut threads: Vec<Value> = threads
         .map(|thread| json!({"id": thread_id(thread.number), "name": thread.name}))
         .collect();
+    if is_whole(told) {
+        threads.push(json!({"id": thread_id(0), "name": "flow"}));
+    }
     json!({ "threads": threads })
+}
+
+/// The number of the thread at which it is stopped, for a client.
+pub(super) fn stopped_thread(told: &Report) -> Option<u64> {
+    let stop = told.stop.as_ref().and_then(|stop| stop.thread);
+    let number = stop.or(told.thread().map(|thread| thread.number));
+    number.or(is_whole(told).then_some(0)).map(thread_id)
 }
 
 pub(super) fn stack(
@@ -51,6 +69,7 @@ pub(super) fn stack(
     let places: Vec<&At> = thread
         .into_iter()
         .flat_map(|thread| std::iter::once(&thread.at).chain(thread.calls.iter().rev()))
+        .chain(told.at().filter(|_| is_whole(told)))
         .collect();
     let (start, levels) = window;
     let levels = if levels == 0 { FRAMES } else { levels };
@@ -88,11 +107,15 @@ pub(super) fn source(name: &str) -> Value {
     json!({"name": name, "sourceReference": SOURCE, "origin": "trik show"})
 }
 
-pub(super) fn scopes() -> Value {
-    json!({"scopes": [
-        {"name": "Variables", "variablesReference": VARIABLES, "expensive": false},
-        {"name": "Sensors", "variablesReference": SENSORS, "expensive": true},
-    ]})
+pub(super) fn scopes(told: &Report) -> Value {
+    let mut scopes = vec![
+        json!({"name": "Variables", "variablesReference": VARIABLES, "expensive": false}),
+        json!({"name": "Sensors", "variablesReference": SENSORS, "expensive": true}),
+    ];
+    if is_whole(told) {
+        scopes.push(json!({"name": "Ports", "variablesReference": PORTS, "expensive": false}));
+    }
+    json!({ "scopes": scopes })
 }
 
 pub(super) fn variables(
@@ -106,6 +129,13 @@ pub(super) fn variables(
         let own = told.variables.iter();
         let own = own.filter(|variable| !sensors.contains(&variable.name.as_str()));
         found.extend(own.map(|variable| one(&variable.name, &variable.value, &variable.kind)));
+    }
+    if reference == PORTS {
+        let ports = told.ports.iter();
+        found.extend(ports.map(|port| {
+            let name = port.full_name();
+            json!({"name": name, "value": port.value, "variablesReference": 0})
+        }));
     }
     if reference == SENSORS {
         for name in sensors {

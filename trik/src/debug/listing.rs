@@ -1,4 +1,4 @@
-//! The text of a diagram that a person debugs, and where each block stands in it.
+//! The text of a program of blocks that a person debugs, and where each block stands in it.
 //!
 //! Owns the lines: those of `trik show` where it is clear what the diagram does, else a line for each block. Every block has
 //! a line, so that a program that is stopped can always be shown.
@@ -15,6 +15,9 @@ use lang_diagram::show::outline::{self, Line};
 use lang_text::problem::Locale;
 use std::collections::HashMap;
 use std::path::Path;
+
+/// The type of the block with which a diagram begins.
+const BEGIN: &str = "InitialNode";
 
 /// The text of the diagram or the data-flow program in a file.
 ///
@@ -33,6 +36,8 @@ pub(crate) struct Listing {
     places: HashMap<Box<str>, usize>,
     /// Blocks of a data-flow program by what people call them.
     callings: HashMap<String, Box<str>>,
+    /// Blocks by a name of several: where a subprogram begins, all of a type.
+    named: HashMap<String, Vec<Box<str>>>,
 }
 
 impl Listing {
@@ -50,10 +55,17 @@ impl Listing {
         let lines = outline::lines(project, locale);
         let mut listing = Self {
             lines: lines.unwrap_or_default(),
-            places: HashMap::new(),
-            callings: HashMap::new(),
+            ..Self::default()
         };
         listing.find_places();
+        for diagram in &project.diagrams {
+            for block in &diagram.blocks {
+                if block.kind == BEGIN {
+                    listing.name(&diagram.name, &block.id);
+                }
+                listing.name(&block.kind, &block.id);
+            }
+        }
         listing.add_others(project, locale);
         listing.find_places();
         listing
@@ -73,6 +85,7 @@ impl Listing {
         for diagram in main.into_iter().chain(&project.diagrams) {
             for (block, name) in diagram.blocks.iter().zip(show::callings(diagram, locale)) {
                 let id: Box<str> = block.id.as_str().into();
+                listing.name(&block.element, &id);
                 let long = format!("{}/{name}", diagram.name);
                 listing.callings.entry(long).or_insert_with(|| id.clone());
                 listing.callings.entry(name).or_insert(id);
@@ -80,6 +93,25 @@ impl Listing {
         }
         listing.find_places();
         listing
+    }
+
+    /// A block has a name that others may have too.
+    fn name(&mut self, name: &str, block: &str) {
+        let blocks = self.named.entry(name.to_owned()).or_default();
+        // A diagram that is called as a type names none twice.
+        if !blocks.iter().any(|one| **one == *block) {
+            blocks.push(block.into());
+        }
+    }
+
+    /// The blocks that a name of several means: where a subprogram begins, or all of a type; of a data-flow program also the
+    /// one that a person calls so.
+    pub(crate) fn named(&self, name: &str) -> Vec<Box<str>> {
+        match (self.named.get(name), self.callings.get(name)) {
+            (Some(blocks), _) => blocks.clone(),
+            (None, Some(block)) => vec![block.clone()],
+            (None, None) => Vec::new(),
+        }
     }
 
     fn find_places(&mut self) {

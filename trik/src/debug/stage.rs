@@ -1,20 +1,21 @@
-//! A diagram that somebody debugs in a simulated world: in this process, with model time that stands still at a stop.
+//! A program that somebody debugs in a simulated world: in this process, with model time that stands still at a stop.
 //!
 //! Owns the run, where its robot was at each moment, and what was said of it so far. Rules, program and debugger are those
-//! of `sim` and `lang-diagram`.
+//! of `sim`, `lang-diagram` and `lang-dataflow`.
 
 use super::stops::words;
-use super::target::{Changed, Channel, Event, Target, Written, problems};
-use crate::check::{Staged, Start};
+use super::target::{Changed, Channel, Event, Target, Written, lines, problems};
+use crate::check::{Ready, Staged, Start};
 use crate::error::Error;
 use crate::limits;
 use lang_constraint::Level;
+use lang_dataflow::machine::patch as flow;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
-use lang_diagram::machine::patch::{Refused, Version};
+use lang_diagram::machine::patch;
 use lang_text::problem::Locale;
 use serde_json::Value;
-use sim::judge::debugged::{self, Debugged};
+use sim::judge::debugged::{self, Debugged, Refused, Version};
 use sim::judge::{Failure, Outcome, Progress, Settings, Task, Trial, Verdict};
 use std::collections::VecDeque;
 use std::path::Path;
@@ -65,9 +66,13 @@ impl<'a> Stage<'a> {
 
     /// A run of what was prepared.
     pub(crate) fn of(staged: &'a Staged, start: Start) -> Self {
-        let mut program = Debugged::new(staged.program.clone(), staged.settings.locale);
+        let locale = staged.settings.locale;
+        let mut program = match &staged.program {
+            Ready::Diagram(_, program) => Debugged::diagram(program.clone(), locale),
+            Ready::Flow(_, program) => Debugged::flow(program.clone(), locale),
+        };
         match start {
-            Start::Stopped => program.desk.session().debugger().pause(),
+            Start::Stopped => program.stop_first(),
             Start::Running => {}
         }
         Self::new(&staged.task, program, &staged.settings, staged.world)
@@ -129,7 +134,7 @@ impl<'a> Stage<'a> {
     }
 
     fn news(&mut self) -> Vec<Event> {
-        let news = self.program.desk.news();
+        let news = self.program.news();
         let mut events: Vec<Event> = news
             .iter()
             .filter_map(|text| Some(Event::Report(serde_json::from_str(text).ok()?)))
@@ -146,6 +151,16 @@ impl<'a> Stage<'a> {
         let (began, from) = *self.pace.get_or_insert((Instant::now(), now));
         let passed = f64::from(now.saturating_sub(from)) / 1000.0 / speed;
         Duration::from_secs_f64(passed).saturating_sub(began.elapsed())
+    }
+}
+
+/// Why a version is refused, a line for each problem.
+fn explained(why: &Refused, locale: Locale) -> String {
+    match why {
+        Refused::Diagram(why) => problems(why, locale),
+        Refused::Flow(flow::Refused::Ended) => words::said(locale, words::has_ended()),
+        Refused::Flow(flow::Refused::Mistakes(mistakes)) => lines(mistakes, locale),
+        Refused::OtherLanguage => words::said(locale, words::other_language()),
     }
 }
 
@@ -206,7 +221,7 @@ impl Target for Stage<'_> {
                 break;
             }
         }
-        while self.program.desk.session().search_on() && Instant::now() < until {}
+        while self.program.search_on() && Instant::now() < until {}
         self.end_if_over();
         let mut events = self.news();
         if let (false, Some(outcome)) = (self.has_told_end, &self.outcome) {
@@ -221,26 +236,28 @@ impl Target for Stage<'_> {
 
     fn change(&mut self, _file: &Path, version: Written<'_>) -> Result<Changed, Error> {
         let locale = self.settings.locale;
-        let project = match version {
-            Written::Diagram(project) => project,
-            // Only diagrams come here, and one does not become the other.
-            Written::Flow(_) => {
-                let why = "it is a data-flow program now, which is debugged on a robot".to_owned();
-                return Ok(Changed::CannotBe(why));
-            }
+        let version = match version {
+            Written::Diagram(project) => patch::Version::of(project, self.world)
+                .map(Version::Diagram)
+                .map_err(|why| problems(&why, locale)),
+            Written::Flow(flow) => flow
+                .ready()
+                .map(|program| Version::Flow(program.into()))
+                .map_err(|mistakes| lines(&mistakes, locale)),
         };
-        let version = match Version::of(project, self.world) {
+        let version = match version {
             Ok(version) => version,
-            Err(why) => return Ok(Changed::Wrong(problems(&why, locale))),
+            Err(why) => return Ok(Changed::Wrong(why)),
         };
         let Some(trial) = &mut self.trial else {
-            return Ok(Changed::CannotBe(problems(&Refused::Ended, locale)));
+            let why = words::said(locale, words::has_ended());
+            return Ok(Changed::CannotBe(why));
         };
         let patched = debugged::patch(trial, &mut self.program, &version);
         self.end_if_over();
         Ok(match patched {
-            Ok(patched) => Changed::InForce(patched.to_string()),
-            Err(why) => Changed::CannotBe(problems(&why, locale)),
+            Ok(patched) => Changed::InForce(patched),
+            Err(why) => Changed::CannotBe(explained(&why, locale)),
         })
     }
 
@@ -251,7 +268,7 @@ impl Target for Stage<'_> {
     fn close(&mut self) {}
 
     fn keeps_past(&self) -> bool {
-        true
+        self.program.keeps_past()
     }
 
     fn scene(&self, ms: u64) -> Option<String> {

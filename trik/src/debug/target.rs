@@ -1,8 +1,9 @@
-//! Where a diagram runs that somebody debugs: a simulated robot in this process, or a robot elsewhere.
+//! Where a program of blocks runs that somebody debugs: a simulated robot in this process, or a robot elsewhere.
 //!
 //! Owns the border. Front ends (the terminal, an editor) know no more of a robot than this.
 
-use crate::diagrams::flow::Flow;
+use super::stops::words;
+use crate::diagrams::flow::{Flow, Program};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::machine::patch::Refused;
@@ -12,7 +13,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;
 
-/// A diagram with its debugger.
+/// A program with its debugger.
 pub(crate) trait Target {
     /// Gives an order and waits for its answer, a JSON object.
     ///
@@ -54,7 +55,17 @@ pub(crate) enum Written<'a> {
     Flow(&'a Flow),
 }
 
-/// What has become of a new version of a diagram.
+impl<'a> Written<'a> {
+    /// What a file has.
+    pub(crate) fn of(program: &'a Program) -> Self {
+        match program {
+            Program::Diagram(opened) => Self::Diagram(&opened.project),
+            Program::Flow(flow, _) | Program::Text(flow) => Self::Flow(flow),
+        }
+    }
+}
+
+/// What has become of a new version of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Changed {
     /// It runs, and this is what it has changed.
@@ -87,14 +98,16 @@ pub(crate) enum Channel {
 
 /// Why a version is refused, a line for each problem.
 pub(crate) fn problems(why: &Refused, locale: Locale) -> String {
-    let line = |problem: &Problem| problem.in_locale(locale);
     match why {
-        Refused::Ended => "the program has ended".to_owned(),
-        Refused::Mistakes(_) | Refused::Occupied(_) => {
-            let lines: Vec<String> = why.problems().iter().map(line).collect();
-            lines.join("\n")
-        }
+        Refused::Ended => words::said(locale, words::has_ended()),
+        Refused::Mistakes(_) | Refused::Occupied(_) => lines(why.problems(), locale),
     }
+}
+
+/// A line for each problem.
+pub(crate) fn lines(problems: &[Problem], locale: Locale) -> String {
+    let lines = problems.iter().map(|problem| problem.in_locale(locale));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// The lines of breakpoints in what a debugger has told; none if it has told something else.

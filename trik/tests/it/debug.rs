@@ -2,6 +2,8 @@
 
 /// Frames that an editor sends, and some that none does.
 mod dap;
+/// Data-flow programs in a simulated world.
+mod flow;
 
 use crate::programs::Reachable;
 use crate::rig::TRIK;

@@ -4,13 +4,11 @@
 
 use super::words;
 use super::{Found, port_place};
+use crate::limits;
 use crate::machine::POLL_MS;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};
 use lang_diagram::machine::STEP_MS;
 use std::collections::HashMap;
-
-/// How often periods are handed on.
-const PASSES: usize = 12;
 
 /// How often tokens come to a port.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -114,7 +112,7 @@ fn infer(program: &Program) -> Rates {
             ins.insert((start.node, start.port), Rate::Once);
         }
     }
-    for _ in 0..PASSES {
+    for _ in 0..limits::PASSES_MAX {
         let before = outs.clone();
         for id in 0..program.nodes.len() as NodeId {
             give(program, id, &ins, &mut outs);

@@ -273,8 +273,6 @@ fn writers_of(program: &Program) -> BTreeMap<Port, Vec<(NodeId, Target)>> {
 
 /// Motors that two parts of the program drive without anything that decides between them.
 fn writers(program: &Program, graph: &Graph, found: &mut Found) {
-    /// Pairs that are looked at for one port.
-    const PAIRS: usize = 64;
     // Looking takes time with the size of the program; a large one is not looked at wholly.
     let most = limits::WRITER_WALKS_MAX / (program.nodes.len() + graph.edges()).max(1);
     let mut looked = 0;
@@ -287,7 +285,7 @@ fn writers(program: &Program, graph: &Graph, found: &mut Found) {
             for &(other, second) in &writers[at + 1..] {
                 pairs += 1;
                 looked += 4;
-                if pairs > PAIRS || looked > most.max(4) {
+                if pairs > limits::WRITER_PAIRS_MAX || looked > most.max(4) {
                     break 'port;
                 }
                 if one != other && !is_separated(program, graph, (one, first), (other, second)) {

@@ -6,6 +6,7 @@ use super::Found;
 use super::givers::{Known, Variables};
 use super::words;
 use crate::blocks::Kind;
+use crate::limits;
 use crate::lower::DATA;
 use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target, Text};
 use lang_diagram::ports::Sort;
@@ -13,9 +14,6 @@ use lang_expr::names::{is_own, own_name};
 use lang_expr::reserved::{SENSORS, Shape};
 use lang_expr::tree::Node as Part;
 use lang_expr::{Compat, Names, Source, Type, Value, Wanted};
-
-/// How often types are handed on; a chain that is longer in the wrong order stays unknown at its end.
-const PASSES: usize = 12;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -193,7 +191,7 @@ pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
         texts: program.formulas.iter().map(|_| Of::Any).collect(),
         variables: Variables::of(program),
     };
-    for pass in 0..PASSES {
+    for pass in 0..limits::PASSES_MAX {
         let before = (
             inference.types.outs.clone(),
             inference.variables.known.clone(),
@@ -205,7 +203,7 @@ pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
             break;
         }
         // Texts that wait for each other are looked at as they are, once everything else is known.
-        inference.variables.is_forced |= pass > 0 && is_same || pass + 2 >= PASSES;
+        inference.variables.is_forced |= pass > 0 && is_same || pass + 2 >= limits::PASSES_MAX;
     }
     inference.learn(Some(found));
     inference.types

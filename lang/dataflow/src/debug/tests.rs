@@ -286,6 +286,20 @@ fn a_program_that_waits_is_paused_too() {
 }
 
 #[test]
+fn a_pause_of_a_caller_whose_clock_stands_still_takes_no_time() {
+    let wait = "G Motors {M3Power=50}\nW Wait and send {time=60000}\nG.CF_OUT > W.CF_IN";
+    let (mut desk, mut robot) = (desk(wait), Robot::default());
+    told(&mut desk, "attach");
+    runs(&mut desk, &mut robot, 0, 100);
+    told(&mut desk, "pause");
+    runs(&mut desk, &mut robot, 110, 110);
+    assert!(desk.is_stopped());
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 110, 110);
+    assert_eq!(desk.machine().now(), 110);
+}
+
+#[test]
 fn a_debugger_that_never_stops_it_changes_nothing() {
     let run = |orders: &[&str]| {
         let (mut desk, mut robot) = (desk(SLOW), Robot::default());

@@ -6,15 +6,8 @@ use proptest::prelude::*;
 #[test]
 fn many_of_the_programs_that_are_made_may_run() {
     let ran = (0..400u32).filter(|seed| {
-        let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(1);
-        let bytes: Vec<u8> = (0..200)
-            .map(|_| {
-                state ^= state << 13;
-                state ^= state >> 17;
-                state ^= state << 5;
-                state as u8
-            })
-            .collect();
+        let mut random = needs::Random::new(*seed);
+        let bytes: Vec<u8> = (0..200).map(|_| random.byte()).collect();
         program(&bytes)
     });
     let ran = ran.count();

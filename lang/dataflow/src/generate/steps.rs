@@ -10,7 +10,7 @@ use super::plan::{ENCODER_OUT, Plan, gives_encoder, shows};
 use super::step::{Body, Routine, Step};
 use crate::blocks::CONTROL_OUT;
 use crate::machine::SERVO_DEGREES;
-use crate::program::{Act, Flow, Formula, NodeId, Op, Source, Target as To};
+use crate::program::{Act, Flow, Formula, Gathers, NodeId, Op, Source, Target as To};
 use crate::project::Policy;
 use lang_diagram::ports::{Port, Sort};
 use lang_expr::Value;
@@ -241,8 +241,11 @@ impl Writer<'_, '_> {
     /// A block has a token at each input that it waits for.
     fn together(&mut self, id: NodeId, tokens: &[(u8, String)]) -> Vec<Step> {
         let mut steps = Vec::new();
-        match &self.plan.program.node(id).op {
-            Op::Flow(Flow::Function { texts, .. }) => {
+        let Some(gathers) = self.plan.program.node(id).gathers() else {
+            return steps;
+        };
+        match gathers {
+            Gathers::Function(texts) => {
                 for (port, token) in tokens {
                     let own = crate::lower::INPUTS[usize::from((port - DATA) / 2)];
                     let field = self.value(id, own);
@@ -250,15 +253,14 @@ impl Writer<'_, '_> {
                 }
                 steps.extend(self.compute_all(id, texts));
             }
-            Op::Act(Act::Drive { devices, .. }) => {
+            Gathers::Drive(devices) => {
                 for (port, token) in tokens {
                     let (device, _) = devices[usize::from(port - DATA)];
                     steps.push(self.tell(device, token));
                 }
                 steps.extend(self.done(id));
             }
-            // A zip.
-            Op::Flow(_) | Op::Source(_) | Op::Act(_) => {
+            Gathers::Zip => {
                 let items: Vec<String> = tokens.iter().map(|(_, token)| token.clone()).collect();
                 if items.len() == 2 {
                     let list = super::language::list(self.plan.target, &items);

@@ -6,7 +6,7 @@ use super::state::{Held, Memory};
 use super::values::{self, is_unit};
 use super::words;
 use super::{Env, Halt, Machine};
-use crate::program::{Act, Flow, Formula, NodeId, Op, Target};
+use crate::program::{Flow, Formula, Gathers, NodeId, Op, Target};
 use lang_diagram::machine::STEP_MS;
 use lang_expr::Value;
 use std::rc::Rc;
@@ -79,8 +79,11 @@ impl Machine {
         mut tokens: [Option<Value>; 16],
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
-        match &env.program.node(id).op {
-            Op::Flow(Flow::Function { texts, .. }) => {
+        let Some(gathers) = env.program.node(id).gathers() else {
+            return Ok(());
+        };
+        match gathers {
+            Gathers::Function(texts) => {
                 for at in 0..texts.len() {
                     if let Some(value) = tokens[FUNCTION_IN + 2 * at].take() {
                         self.bind(id, at, value);
@@ -88,7 +91,7 @@ impl Machine {
                 }
                 self.compute_all(id, texts, env)
             }
-            Op::Act(Act::Drive { devices, .. }) => {
+            Gathers::Drive(devices) => {
                 for (at, (port, _)) in devices.iter().enumerate() {
                     if let Some(value) = &tokens[FUNCTION_IN + at] {
                         let from = Target {
@@ -100,15 +103,13 @@ impl Machine {
                 }
                 self.done(id, env)
             }
-            // A zip: DATA1, OUT, DATA2.
-            Op::Flow(_) | Op::Source(_) | Op::Act(_) => {
-                match [tokens[0].take(), tokens[2].take()] {
-                    [Some(one), Some(other)] => {
-                        self.send_made(id, 1, values::list(vec![one, other]), env)
-                    }
-                    _ => Ok(()),
+            // DATA1, OUT, DATA2.
+            Gathers::Zip => match [tokens[0].take(), tokens[2].take()] {
+                [Some(one), Some(other)] => {
+                    self.send_made(id, 1, values::list(vec![one, other]), env)
                 }
-            }
+                _ => Ok(()),
+            },
         }
     }
 

@@ -66,6 +66,13 @@ impl fmt::Display for Patched {
     }
 }
 
+impl From<Rc<Program>> for Version {
+    /// Of a program that was checked and has no errors.
+    fn from(program: Rc<Program>) -> Self {
+        Self { program }
+    }
+}
+
 impl Version {
     /// Checks a project as `trik lint` does.
     ///
@@ -171,6 +178,7 @@ impl Machine {
     fn take_over(&mut self, old: &Self) {
         self.began = old.began;
         self.asked = old.asked;
+        self.was_stopped = old.was_stopped;
         self.now = old.now;
         self.set = old.set;
         self.next_poll = old.next_poll;

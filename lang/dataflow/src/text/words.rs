@@ -3,16 +3,14 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 use super::lexer::{Token, Wrong};
+use crate::limits::REPEATED_MAX;
 use lang_text::near::did_you_mean;
 use lang_text::problem::Words;
-
-/// Characters of a text that a message repeats.
-const SHOWN: usize = 60;
 
 /// The beginning of a text that may be very long, in one line.
 fn short(text: &str) -> String {
     let mut letters = text.chars();
-    let shown = letters.by_ref().take(SHOWN);
+    let shown = letters.by_ref().take(REPEATED_MAX);
     let mut shown: String = shown
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();

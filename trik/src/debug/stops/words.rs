@@ -236,6 +236,18 @@ pub(crate) fn ending(what: [&str; 2], seconds: f64) -> Words {
 
 pub(crate) const ACCOMPLISHED: [&str; 2] = ["the task is accomplished", "задание выполнено"];
 pub(crate) const ENDED: [&str; 2] = ["the program has ended", "программа закончилась"];
+pub(crate) fn has_ended() -> Words {
+    let [english, russian] = ENDED;
+    Words::new(english, russian)
+}
+
+pub(crate) fn other_language() -> Words {
+    Words::new(
+        "what runs is a program of the other language of blocks: end it, and start the new one",
+        "выполняется программа на другом языке блоков: завершите её и запустите новую",
+    )
+}
+
 pub(crate) const TIME_IS_OVER: [&str; 2] = [
     "the run was stopped, its model time is over",
     "запуск остановлен, его модельное время вышло",

@@ -12,7 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 
 /// A client of an adapter.
-struct Editor {
+pub(super) struct Editor {
     process: Child,
     to: Box<dyn Write>,
     from: Receiver<Value>,
@@ -58,7 +58,7 @@ impl Editor {
         }
     }
 
-    fn start() -> Self {
+    pub(super) fn start() -> Self {
         let mut process = Command::new(TRIK)
             .arg("dap")
             .stdin(Stdio::piped())
@@ -89,7 +89,7 @@ impl Editor {
         }
     }
 
-    fn event(&mut self, name: &str) -> Value {
+    pub(super) fn event(&mut self, name: &str) -> Value {
         self.wait(|message| message["event"] == name)["body"].take()
     }
 
@@ -103,21 +103,25 @@ impl Editor {
         self.wait(|message| message["request_seq"] == seq)
     }
 
-    fn good(&mut self, command: &str, arguments: Value) -> Value {
+    pub(super) fn good(&mut self, command: &str, arguments: Value) -> Value {
         let mut answer = self.ask(command, arguments);
         assert_eq!(answer["success"], true, "{command}: {answer}");
         answer["body"].take()
     }
 
-    fn bad(&mut self, command: &str, arguments: Value) -> String {
+    pub(super) fn bad(&mut self, command: &str, arguments: Value) -> String {
         let answer = self.ask(command, arguments);
         assert_eq!(answer["success"], false, "{command}: {answer}");
         answer["message"].as_str().expect("why").to_owned()
     }
 
     fn launch(&mut self, board: &Board, more: Value) {
+        self.launch_file(board, "count.qrs", more);
+    }
+
+    pub(super) fn launch_file(&mut self, board: &Board, file: &str, more: Value) {
         self.good("initialize", json!({"adapterID": "trik"}));
-        let mut arguments = json!({"program": board.path("count.qrs")});
+        let mut arguments = json!({"program": board.path(file)});
         for (name, value) in more.as_object().expect("members") {
             arguments[name] = value.clone();
         }
@@ -126,19 +130,19 @@ impl Editor {
     }
 
     /// The line at which it is stopped.
-    fn line(&mut self, stopped: &Value) -> u64 {
+    pub(super) fn line(&mut self, stopped: &Value) -> u64 {
         let thread = stopped["threadId"].as_u64().expect("a thread");
         let stack = self.good("stackTrace", json!({ "threadId": thread }));
         stack["stackFrames"][0]["line"].as_u64().expect("a line")
     }
 
-    fn value(&mut self, text: &str) -> String {
+    pub(super) fn value(&mut self, text: &str) -> String {
         let arguments = json!({"expression": text, "context": "watch"});
         let answer = self.good("evaluate", arguments);
         answer["result"].as_str().expect("a value").to_owned()
     }
 
-    fn end(mut self) {
+    pub(super) fn end(mut self) {
         self.good("disconnect", json!({}));
         drop(self.to);
         assert!(self.process.wait().expect("an end").success());

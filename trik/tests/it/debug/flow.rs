@@ -1,0 +1,138 @@
+//! `trik debug` and `trik dap` with data-flow programs, in a simulated world.
+
+use super::dap::Editor;
+use super::debug;
+use harness::Board;
+use serde_json::json;
+
+/// Counts to 40, by ones, ten times in a second, and then stops.
+const COUNTER: &str = "
+diagram \"Counter\"
+  numbers: Loop(start_border = 1, end_border = 40, increment = 1, time = 100)
+  sum: \"Text programming\"(IO0 = `sum = gain * I0; sum`)
+  gain: Variable(variable = \"gain = 2\")
+  wheels: Motors
+  numbers.OUT -> sum.I0
+  sum.O0 -> wheels.M3
+";
+
+fn board() -> Board {
+    let board = Board::new();
+    board.file("count.flow", COUNTER);
+    board
+}
+
+#[test]
+fn a_data_flow_program_is_stopped_stepped_changed_and_ends() {
+    let board = board();
+    let typed = "list\nbreak wheels if data > 6\nc\np sum\ns\nset gain=3\nc\nrn\nreload\ninfo variables\nd\nc\n\
+        where\nq\n";
+    let told = debug(&board, &["debug", "count.flow"], typed).good();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn what_a_debugger_does_not_change_is_what_it_would_be_alone() {
+    let board = board();
+    let alone = debug(&board, &["check", "count.flow"], "").good();
+    let told = debug(
+        &board,
+        &["debug", "count.flow"],
+        "break wheels\nc\nc\nd\nc\nq\n",
+    )
+    .good();
+    let seconds = alone
+        .split(" s")
+        .next()
+        .and_then(|text| text.rsplit(' ').next());
+    let seconds = seconds.expect("a time");
+    assert!(told.contains(seconds), "{seconds}: {told}");
+}
+
+#[test]
+fn a_broken_program_is_refused_with_its_place() {
+    let board = board();
+    board.file("broken.flow", "diagram \"Counter\"\n  wheels: Wheels\n");
+    let refused = debug(&board, &["debug", "broken.flow"], "c\nq\n");
+    assert_eq!(refused.code(), 2, "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("broken.flow: 2:11 "),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
+fn an_editor_stops_at_blocks_of_a_data_flow_program() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch_file(&board, "count.flow", json!({}));
+    // Editors ask for it by themselves; no is no error.
+    let told = editor.good("setExceptionBreakpoints", json!({"filters": ["errors"]}));
+    assert_eq!(told["breakpoints"][0]["verified"], false, "{told}");
+    let points =
+        json!({"breakpoints": [{"name": "wheels", "condition": "data > 5"}, {"name": "nothing"}]});
+    let set = editor.good("setFunctionBreakpoints", points);
+    assert_eq!(set["breakpoints"][0]["verified"], true, "{set}");
+    assert_eq!(set["breakpoints"][1]["verified"], false, "{set}");
+    editor.good("configurationDone", json!({}));
+    let stopped = editor.event("stopped");
+    assert_eq!(stopped["reason"], "breakpoint");
+    assert_eq!(stopped["text"], "wheels.M3 gets 6");
+    let threads = editor.good("threads", json!({}));
+    assert_eq!(threads["threads"], json!([{"id": 1, "name": "flow"}]));
+    let line = editor.line(&stopped);
+    let source = editor.good("source", json!({"sourceReference": 1}));
+    let text = source["content"].as_str().expect("a text");
+    let shown = text.lines().nth(line as usize - 1).expect("the line");
+    assert!(shown.contains("wheels"), "{shown}");
+    assert_eq!(editor.value("sum * 10"), "60");
+    let ports = editor.good("variables", json!({"variablesReference": 3}));
+    let ports: Vec<&str> = ports["variables"]
+        .as_array()
+        .expect("all")
+        .iter()
+        .filter_map(|one| one["name"].as_str())
+        .collect();
+    assert_eq!(ports, ["numbers.OUT", "sum.O0"]);
+    board.file(
+        "count.flow",
+        COUNTER.replace("gain * I0", "gain * I0 + 100"),
+    );
+    editor.good("restart", json!({}));
+    editor.event("loadedSource");
+    editor.event("stopped");
+    editor.good("continue", json!({"threadId": 1}));
+    let stopped = editor.event("stopped");
+    assert_eq!(stopped["text"], "wheels.M3 gets 108");
+    editor.good("next", json!({"threadId": 1}));
+    editor.event("stopped");
+    assert!(
+        editor
+            .bad("stepBack", json!({"threadId": 1}))
+            .contains("past")
+    );
+    editor.end();
+}
+
+#[test]
+fn a_diagram_does_not_take_the_place_of_a_data_flow_program() {
+    let board = Board::new();
+    let project = lang_dataflow::text::read(COUNTER).expect("a program");
+    let save = lang_dataflow::save::save(&project).write().expect("a save");
+    board.file("count.qrs", save);
+    let mut editor = Editor::start();
+    editor.launch_file(&board, "count.qrs", json!({"stopOnEntry": true}));
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    board.file("count.qrs", super::counting());
+    editor.good("restart", json!({}));
+    let told = editor.event("output");
+    let text = told["output"].as_str().expect("a text");
+    assert!(text.starts_with("the program begins anew: "), "{text}");
+    assert!(text.contains("the other language of blocks"), "{text}");
+    editor.event("stopped");
+    let threads = editor.good("threads", json!({}));
+    assert_eq!(threads["threads"][0]["name"], "main");
+    editor.end();
+}
