@@ -4,6 +4,9 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
+/** Licences that a package may have; another one is a decision of people. */
+const ALLOWED = ['MIT', 'ISC', 'BSD-2-Clause', 'BSD-3-Clause', 'Apache-2.0'];
+
 /** The folder of the package that a module is of; undefined for our own. */
 function folder(module) {
   if (!module.includes('/node_modules/')) return undefined;
@@ -18,7 +21,9 @@ function folder(module) {
 function notice(at) {
   const { name, version, license } = JSON.parse(readFileSync(join(at, 'package.json')));
   const file = readdirSync(at).find((one) => /^licen[cs]e/i.test(one));
-  if (!license) throw new Error(`${name} has no licence`);
+  if (!ALLOWED.includes(license)) {
+    throw new Error(`${name} has the licence ${license}, and the page takes ${ALLOWED.join(', ')}`);
+  }
   const text = file ? readFileSync(join(at, file), 'utf8').trim() : 'Its package has no text of it.';
   return `${name} ${version}, ${license}\n\n${text}\n`;
 }

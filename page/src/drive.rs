@@ -171,7 +171,9 @@ fn file(tree: &Path, path: &str) -> Result<PathBuf, Error> {
         && !path.contains('\0')
         && Path::new(path).components().all(is_plain);
     if !is_path {
-        return Err(Error::Path(path.chars().take(80).collect()));
+        return Err(Error::Path(
+            path.chars().take(limits::REPEATED_MAX).collect(),
+        ));
     }
     Ok(tree.join(path).join("value"))
 }

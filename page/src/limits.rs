@@ -14,6 +14,8 @@ pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
 pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
 pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
+/// Characters of what a browser has sent that an error repeats.
+pub const REPEATED_MAX: usize = 80;
 /// Bytes of a request that is no upload.
 pub const REQUEST_BYTES_MAX: usize = 64 << 10;
 /// Bytes of uploads that wait for the robot, of all browsers together.

@@ -38,7 +38,7 @@ impl Order {
     /// # Errors
     /// It is none.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let why = || Error::Words(text.chars().take(80).collect());
+        let why = || Error::Words(text.chars().take(limits::REPEATED_MAX).collect());
         if text.len() > limits::WORLD_BYTES_MAX {
             return Err(why());
         }

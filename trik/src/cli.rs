@@ -73,13 +73,13 @@ enum Command {
     /// Run a program on a robot and show what it prints.
     ///
     /// Sends the file, runs it, and ends when it has ended. What it prints goes to standard output, errors to standard
-    /// error. NAME.py is Python, NAME.js JavaScript; a file that begins with #! or an ELF file is executed on the robot.
-    /// Another program that runs there is ended first. Ctrl-C stops the program on the robot; a second one does not wait.
+    /// error. NAME.py is Python, NAME.js JavaScript, NAME.lua Lua, NAME.qrs a diagram of TRIK Studio, NAME.flow a data-flow
+    /// program; a file that begins with #! or an ELF file is executed on the robot. Another program that runs there is ended
+    /// first. Ctrl-C stops the program on the robot; a second one does not wait. With --watch each save of a diagram changes
+    /// the one that runs, and motors do not stop.
     ///
     /// Exit status: 0 the program has ended; 1 it has failed, or was stopped; 2 it could not be run, or the connection
     /// was lost.
-    ///
-    /// With --watch each save of a diagram changes the one that runs, and motors do not stop.
     Run(remote::run::RunArgs),
     /// Assign a variable of the diagram that runs on a robot.
     ///
@@ -124,6 +124,8 @@ enum Command {
     /// Exit status: 0 all robots have got everything; 1 one has not.
     Send(remote::fleet::SendArgs),
     /// Show what runs on a robot, and how the last program ended.
+    ///
+    /// Exit status: 0 all robots have told it; 2 one could not be reached, or the command line was not understood.
     Status(remote::fleet::FleetArgs),
     /// Record what the nodes of a mounted tree give.
     ///
@@ -151,14 +153,14 @@ enum Command {
     ///
     /// How long it is, where it is from, what was lost, and how many messages each node has.
     ///
-    /// Exit status: 0 shown; 1 it is no recording, or it is cut; 2 the command line was not understood.
+    /// Exit status: 0 shown; 1 the file is not a recording, or it is cut; 2 the command line was not understood.
     Info(recording::InfoArgs),
     /// Make a cut recording whole.
     ///
     /// A recorder that was killed, or that met a full disk, leaves a file without an end, which most programs refuse. All
     /// whole parts are kept; with the usual recorder the last second is lost.
     ///
-    /// Exit status: 0 it is whole; 1 it is no recording, or the disk takes no more; 2 the command line was not understood.
+    /// Exit status: 0 it is whole; 1 the file is not a recording, or the disk takes no more; 2 the command line was not understood.
     Mend(recording::MendArgs),
     /// Write a piece of a recording, or some of its nodes, as a recording.
     ///
@@ -190,23 +192,25 @@ enum Command {
     },
     /// Break a device of a running virtual robot, or repair it.
     ///
-    /// Programs see what they would see with a real device that fails in this way. Without a MOUNTPOINT it is the only robot
-    /// that runs.
-    Fault(fault::FaultArgs),
-    /// Write a diagram of TRIK Studio as a program in a textual language.
+    /// Programs see what they would see with a real device that fails in this way. Without --robot it is the only robot that
+    /// runs.
     ///
-    /// The program does what the diagram does, and goes to standard output, or into a new file with -o. Notes go to
+    /// Exit status: 0 it is broken or repaired; 1 the robot refuses; 2 no robot runs, or the command line was not understood.
+    Fault(fault::FaultArgs),
+    /// Write a diagram or a data-flow program as a program in a textual language.
+    ///
+    /// The program does what the blocks do, and goes to standard output, or into a new file with -o. Notes go to
     /// standard error, for example that blocks had to be written twice because arrows cross.
     ///
     /// Exit status: 0 written; 1 the diagram has errors, or cannot be written in this language, or the file is there
     /// already; 2 the diagram cannot be read, or the command line was not understood.
     Gen(diagrams::generate::GenArgs),
-    /// Show a diagram of TRIK Studio as sentences, or as a picture.
+    /// Show a diagram or a data-flow program as sentences, or as a picture.
     ///
     /// Exit status: 0 shown; 1 it is not clear what the diagram does, there is no diagram with this name, or the picture
     /// could not be written; 2 the diagram cannot be read, or the command line was not understood.
     Show(diagrams::show::ShowArgs),
-    /// Find mistakes in diagrams of TRIK Studio, and in worlds and their rules, without running them.
+    /// Find mistakes in diagrams, data-flow programs, worlds and their rules, without running them.
     ///
     /// A line for each problem: file, severity, diagram, block and its position on the sheet in px, property, line and column
     /// in its text, what is wrong. Of a world: file, severity, event of the rules, line and column, what is wrong, and what
@@ -224,8 +228,8 @@ enum Command {
     NewTask(task::NewTaskArgs),
     /// Run solutions of tasks in simulated time and judge them.
     ///
-    /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is;
-    /// --field puts it into other worlds. The world is simulated as in TRIK Studio, much faster than real time, and
+    /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is, or
+    /// a data-flow program NAME.flow, or a program NAME.js or NAME.py; --field puts it into other worlds. The world is simulated as in TRIK Studio, much faster than real time, and
     /// the same run always ends in the same way. One run prints its messages, several make a table. A directory means
     /// all solutions below it, which run on all cores; a run that crashes or hangs does not affect the others. --grades
     /// writes the table of a class, --explain says why a run ended as it did.
@@ -234,21 +238,21 @@ enum Command {
     /// or an error of the program; 2 a solution is broken or could not be run or judged, a file could not be written, or
     /// the command line was not understood. With --for the exit status is that of the platform.
     Check(Box<check::CheckArgs>),
-    /// Debug a diagram: stop, step, look, and go back.
+    /// Debug a diagram or a data-flow program: stop, step, look, and go back.
     ///
-    /// The program runs in a simulated world and is stopped before its first block. The words are those of gdb; help shows them. Model time stands still
-    /// while it is stopped, and the past is kept, so that each moment of it can be looked at again: reverse-next,
-    /// reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs on a robot, whose motors rest
-    /// while it is stopped.
+    /// The program runs in a simulated world and is stopped before its first block. The words are those of gdb; help shows
+    /// them. Model time stands still while it is stopped. The past of a diagram is kept, so that each moment of it can be
+    /// looked at again: reverse-next, reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs
+    /// on a robot, whose motors rest while it is stopped.
     ///
-    /// Exit status: 0 you have ended it; 2 the diagram cannot run, or the command line was not understood.
+    /// Exit status: 0 you have ended it; 2 the program cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),
-    /// Debug diagrams from an editor, by the Debug Adapter Protocol.
+    /// Debug diagrams and data-flow programs from an editor, by the Debug Adapter Protocol.
     ///
     /// Serves one client on standard input and output, or clients on a TCP port. A launch request has program, a diagram
-    /// NAME.qrs, and may have robot, field, task, inputs, gamepad, seed, speed, language, stopOnEntry, stopAtEnd and noDebug;
-    /// attach joins the diagram that runs on a robot. Lines
-    /// are those of the diagram as text, which the adapter gives.
+    /// NAME.qrs or a data-flow program NAME.flow, and may have robot, field, task, inputs, gamepad, seed, speed, language,
+    /// stopOnEntry, stopAtEnd and noDebug; attach joins the program that runs on a robot. Lines are those of the program as
+    /// text, which the adapter gives.
     ///
     /// Exit status: 0 the client has ended; 2 the port cannot be had, or the command line was not understood.
     Dap(dap::DapArgs),

@@ -65,7 +65,7 @@ pub(crate) enum Dcml {
     /// Serve an editor: errors as you type, documentation, completion, rename and more.
     ///
     /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
-    /// has said goodbye; 1 it was gone before.
+    /// has ended the session; 1 it disconnected first.
     Lsp,
     /// Run a model under actions for some time, and write what it does as a table or a picture.
     ///

@@ -10,6 +10,8 @@ pub const ROBOTS_MAX: usize = 32;
 pub const SPEED_MIN: f64 = 0.1;
 /// See [`SPEED_MIN`].
 pub const SPEED_MAX: f64 = 20.0;
+/// Bytes of a file with a world: more than any save may have.
+pub const WORLD_FILE_BYTES_MAX: u64 = 64 << 20;
 /// How often the view is drawn anew, or what was said is told.
 pub const VIEW_MS: u16 = 100;
 /// Characters of what the loudspeaker gave that a line tells: they fit into a pipe that has any room.

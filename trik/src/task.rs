@@ -20,7 +20,7 @@ pub(crate) struct NewTaskArgs {
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
     /// Language of both programs.
-    #[arg(long, value_enum, value_name = "LANG", default_value_t = Language::Js)]
+    #[arg(long, value_enum, value_name = "LANGUAGE", default_value_t = Language::Js)]
     pub lang: Language,
     /// Language of all texts, those of the rules too: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
@@ -34,7 +34,7 @@ pub(crate) struct NewTaskArgs {
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub(crate) enum Language {
     /// JavaScript.
-    #[value(alias = "javascript")]
+    #[value(name = "javascript", alias = "js")]
     Js,
     /// Python 3.
     #[value(alias = "py")]

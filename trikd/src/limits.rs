@@ -8,6 +8,8 @@ pub const PORT_NAME_BYTES: usize = 32;
 pub const VALUE_BYTES: usize = 4096;
 /// How often processes outside of the program's group are looked for before the motors rest: they may start others.
 pub const FREEZE_ROUNDS: usize = 4;
+/// Bytes of a name in a message of multicast DNS: twice what the protocol allows.
+pub const DNS_NAME_BYTES_MAX: usize = 512;
 /// Questions of one message of multicast DNS that are looked at.
 pub const DNS_QUESTIONS_MAX: u16 = 32;
 /// Pointers in one name of multicast DNS.

@@ -118,7 +118,7 @@ pub struct Settings {
     /// Turn this off; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,
-    /// Keep the last minutes of everything that the robot senses and does, so many, in the folder of --box; a program that
+    /// Keep the last MINUTES minutes of everything that the robot senses and does, in the folder of --box; a program that
     /// fails, a stop and a sensor that fails save them, and `trik box save` does.
     #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u16).range(1..=24 * 60))]
     pub box_minutes: Option<u16>,

@@ -39,7 +39,16 @@ const EMPTY: [&str; 8] = [
 fn declared(line: &str) -> Option<&str> {
     let words = line.split_whitespace();
     let mut words = words.skip_while(|word| word.starts_with("pub") || word.ends_with(')'));
-    let is_type = ["enum", "struct", "trait", "type", "union"].contains(&words.next()?);
+    let is_type = [
+        "class",
+        "enum",
+        "interface",
+        "struct",
+        "trait",
+        "type",
+        "union",
+    ]
+    .contains(&words.next()?);
     let name = words.next()?;
     let end = name.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
     is_type.then_some(&name[..end.unwrap_or(name.len())])
@@ -53,6 +62,7 @@ fn declarations_of_types_are_found() {
         "    pub(super) struct Thing<'a> {",
         "pub(in crate::a) type Thing = u8;",
         "struct Thing(u8);",
+        "interface Thing {",
     ] {
         assert_eq!(declared(line), Some("Thing"), "{line}");
     }
@@ -74,6 +84,27 @@ fn names_of_types_say_something() {
         for (number, line) in source.code() {
             if let Some(name) = declared(line).filter(|name| EMPTY.contains(name)) {
                 complaints.push(format!("{}:{number}: {name}", source.path));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn names_of_types_of_the_page_say_something() {
+    let mut found = Vec::new();
+    for ending in ["ts", "svelte"] {
+        super::files(&super::root().join("page/app/src"), ending, &mut found);
+    }
+    assert!(found.len() > 50, "only {} files", found.len());
+    let mut complaints = Vec::new();
+    for path in found {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (number, line) in (1..).zip(text.lines()) {
+            let line = line.trim_start();
+            let line = line.strip_prefix("export ").unwrap_or(line);
+            if let Some(name) = declared(line).filter(|name| EMPTY.contains(name)) {
+                complaints.push(format!("{}:{number}: {name}", path.display()));
             }
         }
     }

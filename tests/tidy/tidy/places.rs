@@ -363,6 +363,49 @@ const OWN_FOLDERS: [(&str, &str); 11] = [
     ("tests/tidy/tidy/places.rs", "this rule"),
 ];
 
+/// Generators of random numbers that are not `needs::Random`, as a path and why.
+const OWN_RANDOM: [(&str, &str); 5] = [
+    (
+        "converter/src/trial.rs",
+        "the product: a trial of a library",
+    ),
+    (
+        "lang/dcml/src/sketch.rs",
+        "the product: what a sketch is drawn with",
+    ),
+    (
+        "lang/diagram/src/stand_in.rs",
+        "the product: a robot that is none",
+    ),
+    ("tests/needs/src/random.rs", "that one"),
+    ("tests/tidy/tidy/places.rs", "this rule"),
+];
+
+#[test]
+fn random_numbers_of_tests_are_those_of_needs() {
+    let mut complaints = Vec::new();
+    let mut found = Vec::new();
+    for source in sources() {
+        // The first step of a generator of Marsaglia.
+        let is_step = |line: &str| line.contains("^=") && line.contains("<< 13");
+        let mut lines = source.code().filter(|(_, line)| is_step(line));
+        let Some((number, _)) = lines.next() else {
+            continue;
+        };
+        if !OWN_RANDOM.iter().any(|(path, _)| *path == source.path) {
+            complaints.push(format!("{}:{number}: use needs::Random", source.path));
+        }
+        drop(lines);
+        found.push(source.path);
+    }
+    for (path, _) in OWN_RANDOM {
+        if !found.iter().any(|one| one == path) {
+            complaints.push(format!("{path}: has no generator"));
+        }
+    }
+    none(&complaints);
+}
+
 #[test]
 fn folders_of_tests_are_those_of_tempfile() {
     let mut complaints = Vec::new();

@@ -131,6 +131,10 @@ fn no_script_of_a_test_sleeps_until_something_should_have_happened() {
             super::files(&super::root().join(folder), ending, &mut found);
         }
     }
+    let mut page = Vec::new();
+    super::files(&super::root().join("page/app/src"), "ts", &mut page);
+    page.retain(|path| path.to_string_lossy().ends_with(".test.ts"));
+    found.extend(page);
     assert!(found.len() > 20, "only {} scripts", found.len());
     let mut complaints = Vec::new();
     for path in found {

@@ -22,7 +22,7 @@ pub(crate) enum Bridge {
 /// The options of `trik bridge prometheus`.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PrometheusArgs {
-    /// The address that is listened at; 0.0.0.0 or :: lets everybody in the network read.
+    /// The address to listen on; 0.0.0.0 or :: lets everybody in the network read.
     #[arg(long, default_value = "127.0.0.1")]
     pub address: IpAddr,
     /// The TCP port; 0 takes a free one.

@@ -17,14 +17,14 @@ pub(crate) struct RecordArgs {
     /// Only nodes whose path is matched: * stands for anything, and a group for all below it; may be given several times.
     #[arg(long, value_name = "PATTERN")]
     pub only: Vec<String>,
-    /// Stop after so many seconds [default: on Ctrl-C, or when the tree is unmounted].
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=86400 * 7))]
+    /// Stop after this many seconds [default: on Ctrl-C, or when the tree is unmounted].
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86400 * 7))]
     pub seconds: Option<u32>,
     /// Record what happens on this robot: its name or address, with its port if that is not 8888, and it sends that over
     /// the network; or where its tree is mounted, a path with a slash.
     #[arg(long, value_name = "ROBOT", value_parser = recorded, conflicts_with = "mountpoint")]
     pub robot: Option<Recorded>,
-    /// Of a robot in the network: at most so many samples a second of each node, the newest ones [default: all].
+    /// Of a robot in the network: at most NUMBER samples a second of each node, the newest ones [default: all].
     #[arg(long, value_name = "NUMBER", requires = "robot", value_parser = rate)]
     pub hz: Option<f64>,
     /// Leave out the messages of standard types, which other tools show at once: a smaller file.

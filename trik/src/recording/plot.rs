@@ -34,7 +34,7 @@ pub(crate) struct PlotArgs {
     /// The recording.
     pub file: PathBuf,
     /// What to draw: a node, a group, a pattern with * for anything, or one number, NODE.NAME.
-    #[arg(required = true, value_name = "CHANNEL")]
+    #[arg(required = true, value_name = "NODE[.NUMBER]")]
     pub channels: Vec<String>,
     /// From this moment on, in seconds from the beginning [default: from the beginning].
     #[arg(long, value_name = "SECONDS", value_parser = moment)]

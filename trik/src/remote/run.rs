@@ -40,7 +40,7 @@ pub(crate) struct RunArgs {
         value_parser = gone(),
         default_value = WhenGone::End.word(),
         requires = "watch",
-        value_name = "WHAT"
+        value_name = "POLICY"
     )]
     pub gone: WhenGone,
 }

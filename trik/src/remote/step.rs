@@ -77,8 +77,8 @@ pub(crate) enum StepKind {
 #[derive(Args, Clone, Debug)]
 pub(crate) struct StepArgs {
     /// How far.
-    #[arg(value_enum, default_value_t)]
-    pub way: StepKind,
+    #[arg(value_enum, default_value_t, value_name = "STEP")]
+    pub step: StepKind,
     #[command(flatten)]
     pub at: WhereArgs,
 }
@@ -132,7 +132,7 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
 /// The file cannot be read, or the robot is gone.
 pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
     let listing = listing(&args.at)?;
-    let order = match args.way {
+    let order = match args.step {
         StepKind::Over => Order::Step(Step::Over, None),
         StepKind::Into => Order::Step(Step::Into, None),
         StepKind::Out => Order::Step(Step::Out, None),

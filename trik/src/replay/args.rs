@@ -18,12 +18,12 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
     pub speed: f64,
     /// Where to begin: seconds, or MINUTES:SECONDS.
-    #[arg(long, value_name = "TIME", value_parser = start)]
+    #[arg(long, value_name = "TIME", visible_alias = "from", value_parser = start)]
     pub start: Option<Duration>,
     /// Begin again at the end.
     #[arg(long = "loop")]
     pub is_loop: bool,
-    /// Stand at the beginning until somebody says go.
+    /// Begin stopped: the clock goes on with `go`, or the space bar.
     #[arg(long)]
     pub paused: bool,
     /// End when the recording is at its end; exit status 1 if a program has written something else than was recorded.

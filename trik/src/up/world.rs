@@ -4,13 +4,11 @@
 
 use crate::error::Error;
 use crate::input::{self, Unread};
+use crate::limits;
 use lang_text::problem::Problem;
 use sim::field::{Field, Locks};
 use std::fmt;
 use std::path::Path;
-
-/// Bytes of a file that are read at most: more than any save may have.
-const BYTES: u64 = 64 << 20;
 
 /// The field of a world model, or of a project, and what the project locks.
 ///
@@ -19,10 +17,13 @@ const BYTES: u64 = 64 << 20;
 pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
     let refused = |why: &dyn std::fmt::Display| Error::file(path, why);
-    let bytes = input::read(path, BYTES).map_err(|unread| match unread {
+    let bytes = input::read(path, limits::WORLD_FILE_BYTES_MAX).map_err(|unread| match unread {
         Unread::Missing => refused(&"there is no such file"),
         Unread::Directory => refused(&"this is a directory: name a world or a project"),
-        Unread::TooLong => refused(&format!("longer than {} MiB", BYTES >> 20)),
+        Unread::TooLong => refused(&format!(
+            "longer than {} MiB",
+            limits::WORLD_FILE_BYTES_MAX >> 20
+        )),
         Unread::Silent => refused(&"nothing comes out of this FIFO or device: name a file"),
         Unread::Failed(error) => refused(&error),
     })?;

@@ -69,7 +69,7 @@ impl Reader<'_> {
                         }
                         name.push_str(&String::from_utf8_lossy(label).to_lowercase());
                         self.at += usize::from(size);
-                        if name.len() > 512 {
+                        if name.len() > limits::DNS_NAME_BYTES_MAX {
                             return None;
                         }
                     }

@@ -17,19 +17,19 @@ export interface Opened extends Read {
 }
 
 /** Whether to go on; the part that is done is from 0 to 1, and undefined while nobody knows. */
-export type Told = (part: number | undefined) => boolean;
+export type ReadProgress = (part: number | undefined) => boolean;
 
-export async function fromFile(file: File, told: Told): Promise<Opened | undefined> {
+export async function fromFile(file: File, told: ReadProgress): Promise<Opened | undefined> {
   if (file.size > FILE_BYTES_MAX) throw new Wrong('large', FILE_BYTES_MAX);
   return opened(new Uint8Array(await file.arrayBuffer()), told);
 }
 
-export async function fromRobot(address: string, told: Told): Promise<Opened | undefined> {
+export async function fromRobot(address: string, told: ReadProgress): Promise<Opened | undefined> {
   const bytes = await lastMinutes(address, () => told(undefined));
   return bytes && opened(bytes, told);
 }
 
-async function opened(bytes: Uint8Array<ArrayBuffer>, told: Told): Promise<Opened | undefined> {
+async function opened(bytes: Uint8Array<ArrayBuffer>, told: ReadProgress): Promise<Opened | undefined> {
   const done = await read(bytes, told);
   return done && { ...done, bytes };
 }

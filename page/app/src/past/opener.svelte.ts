@@ -4,7 +4,7 @@
 
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
-import type { Opened, Told } from './open';
+import type { Opened, ReadProgress } from './open';
 
 /** Where a recording comes from. */
 export type From = 'robot' | File;
@@ -74,7 +74,7 @@ export class Opener {
     this.isBusy = true;
     this.part = undefined;
     this.wrong = '';
-    const told: Told = (part) => {
+    const told: ReadProgress = (part) => {
       if (attempt === this.#attempt) this.part = part;
       return attempt === this.#attempt;
     };

@@ -3,8 +3,8 @@
 // Owns where that clock is. What a recording has is known to `memory`; how it looks, to the views.
 
 import type { Timeline } from '../robot/history';
-import type { Told } from '../robot/debugger.svelte';
-import type { Said } from '../robot/program.svelte';
+import type { DebuggerState } from '../robot/debugger.svelte';
+import type { OutputLine } from '../robot/program.svelte';
 import type { Fields, Line, Node } from '../robot/recording';
 import type { Known } from '../robot/robot.svelte';
 import type { Beside } from './beside.svelte';
@@ -45,7 +45,7 @@ export class Past {
   /** The program that ran; empty if none did. */
   running = $state('');
   /** Where a diagram was. */
-  told = $state.raw<Told | undefined>(undefined);
+  told = $state.raw<DebuggerState | undefined>(undefined);
   #lineCount = 0;
   #stepCount = 0;
   readonly #steps: Steps;
@@ -102,7 +102,7 @@ export class Past {
   }
 
   /** What programs had said by then. */
-  get said(): Said[] {
+  get said(): OutputLine[] {
     return this.lines
       .filter(({ topic }) => SAID.includes(topic))
       .map(({ topic, text, level }, number) => {

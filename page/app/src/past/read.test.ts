@@ -19,7 +19,7 @@ import { FILE_BYTES_MAX } from './limits';
 import { unpacked } from './lz4';
 import { read, readNow } from './read';
 import { sumOf } from './sum';
-import { type What, Wrong } from './wrong';
+import { type RecordingFault, Wrong } from './wrong';
 
 function wrongOf(bytes: Uint8Array): Wrong | undefined {
   try {
@@ -168,7 +168,7 @@ describe('what is refused', () => {
   const data = joined(...begin, sample(1, 1, [5]));
   const sum = sumOf(data);
   const whole = plainFrame(data);
-  const cases: [string, Uint8Array, What | undefined][] = [
+  const cases: [string, Uint8Array, RecordingFault | undefined][] = [
     ['nothing', new Uint8Array(), 'magic'],
     ['another file', new Uint8Array(100).fill(65), 'magic'],
     ['a chunk as it should be', file(chunk('lz4', whole, data.length, sum)), undefined],

@@ -6,7 +6,7 @@
 import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX } from './limits';
 import { unpacked } from './lz4';
 import { sumOf } from './sum';
-import { type What, Wrong } from './wrong';
+import { type RecordingFault, Wrong } from './wrong';
 
 /** Takes what is in a recording. Times are seconds since 1970. */
 export interface Sink {
@@ -128,7 +128,7 @@ export class Walk {
     return false;
   }
 
-  #magic(at: number, what: What): void {
+  #magic(at: number, what: RecordingFault): void {
     if (MAGIC.some((byte, nth) => this.bytes[at + nth] !== byte)) throw new Wrong(what, at);
     this.#at = at + MAGIC.length;
     this.#sum = sumOf(this.bytes.subarray(at, this.#at), this.#sum);

@@ -2,7 +2,7 @@
 //
 // Owns the reading of lines of `/programs` and `/diagram`; docs/protocol.md has what the latter say. Believes nothing.
 
-import type { Place, Thread, Told, Variable } from '../robot/debugger.svelte';
+import type { Place, Thread, DebuggerState, Variable } from '../robot/debugger.svelte';
 import type { Line } from '../robot/recording';
 
 /** Of a value that a person is shown. */
@@ -41,7 +41,7 @@ export class Steps {
   constructor(private readonly lines: readonly Line[]) {}
 
   /** Where the diagram was that runs since a time; undefined if nothing is known of it. */
-  at(time: number, since: number): Told | undefined {
+  at(time: number, since: number): DebuggerState | undefined {
     const end = countUntil(this.lines, time);
     if (this.#since !== since || end < this.#next) {
       this.#since = since;
@@ -66,7 +66,7 @@ export class Steps {
       for (const [name, one] of Object.entries(value.variables)) this.#variables.set(name, one);
   }
 
-  #told(last: Record<string, unknown>): Told {
+  #told(last: Record<string, unknown>): DebuggerState {
     const threads = Array.isArray(last.threads) ? last.threads.filter(isObject) : [];
     const variables = [...this.#variables].map(([name, value]): Variable => ({
       name,

@@ -2,7 +2,7 @@
 //
 // Owns the kinds of it; what a person is told of each is in `words`.
 
-export type What =
+export type RecordingFault =
   /** It does not begin as a recording does. */
   | 'magic'
   /** It ends within a record, or says that more comes than there is. */
@@ -26,7 +26,7 @@ export type What =
 
 export class Wrong extends Error {
   constructor(
-    readonly what: What,
+    readonly what: RecordingFault,
     /** The byte of the file where that is. */
     readonly at: number,
     /** What was found there. */

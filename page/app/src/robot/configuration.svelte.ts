@@ -8,7 +8,7 @@ import type { Link } from '../link/link';
 const VERSIONS = 30;
 
 /** What the server says of it. */
-interface Said {
+interface ConfigurationAnswer {
   text: string;
   status: string;
   faults: [path: string, fault: string][];
@@ -57,14 +57,14 @@ export class Configuration {
     await this.#fetch();
   }
 
-  async #fetch(): Promise<Said | undefined> {
+  async #fetch(): Promise<ConfigurationAnswer | undefined> {
     try {
       const answer = await fetch('/configuration');
       if (!answer.ok) {
         this.absence = (await answer.text()).trim();
         return undefined;
       }
-      const said = (await answer.json()) as Said;
+      const said = (await answer.json()) as ConfigurationAnswer;
       this.absence = '';
       if (String(said.faults) !== String(this.faults)) this.faults = said.faults;
       return said;

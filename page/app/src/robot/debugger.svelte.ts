@@ -31,7 +31,7 @@ export interface Variable {
 }
 
 /** Where the program is. */
-export interface Told {
+export interface DebuggerState {
   state: 'running' | 'stopped' | 'past' | 'searching' | 'ended' | 'gone';
   ms?: number;
   attached?: boolean;
@@ -44,7 +44,7 @@ export interface Told {
 export interface Answer {
   done: boolean;
   why?: string;
-  program?: Told;
+  program?: DebuggerState;
   number?: number;
   type?: string;
   value?: string;
@@ -64,7 +64,7 @@ const TAG_MAX = 4294967295;
 
 export class Debugger {
   /** Undefined while no diagram runs. */
-  told = $state.raw<Told | undefined>(undefined);
+  told = $state.raw<DebuggerState | undefined>(undefined);
   /** Breakpoints by the id of their block. */
   breakpoints = $state.raw<ReadonlyMap<string, number>>(new Map());
   /** Blocks at which a diagram stops when it is run from here, by its name; they are kept when it has ended. */
@@ -171,7 +171,7 @@ export class Debugger {
   message(message: string): void {
     if (!message.startsWith('debug: ')) return;
     const value = JSON.parse(message.slice('debug: '.length)) as Answer &
-      Told & { to?: number | null; control?: string | null };
+      DebuggerState & { to?: number | null; control?: string | null };
     if (typeof value.to === 'number') {
       this.#waiting.get(value.to)?.(value);
       this.#waiting.delete(value.to);

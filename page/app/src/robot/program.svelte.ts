@@ -13,7 +13,7 @@ export interface Stored {
 }
 
 /** A line of a program, or about one. */
-export interface Said {
+export interface OutputLine {
   kind: 'print' | 'error' | 'info' | 'mail';
   text: string;
   /** No other line has it. */
@@ -52,7 +52,7 @@ export class Programs {
   list = $state.raw<Stored[]>([]);
   /** The name of what runs; empty if nothing does. */
   running = $state('');
-  said = $state.raw<Said[]>([]);
+  said = $state.raw<OutputLine[]>([]);
   question = $state.raw<Question | undefined>(undefined);
   /** Texts of programs that a person has changed here and not saved, by their names. */
   readonly drafts = new SvelteMap<string, string>();
@@ -156,7 +156,7 @@ export class Programs {
     }
   }
 
-  #say(kind: Said['kind'], text: string): void {
+  #say(kind: OutputLine['kind'], text: string): void {
     if (kind === 'error' && / is not changed: /.test(text)) this.unchanged = text;
     const cut = text.length > LETTERS ? `${text.slice(0, LETTERS)}...` : text;
     const line = { kind, text: cut.replace(/\n+$/, ''), number: this.#number++ };

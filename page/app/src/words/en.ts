@@ -1,6 +1,6 @@
 // What the page says, in English. `ru.ts` has the same in Russian; a text that is missing there does not compile.
 
-import type { What } from '../past/wrong';
+import type { RecordingFault } from '../past/wrong';
 
 export const en = {
   title: (robot: string) => (robot ? `${robot} - TRIK` : 'TRIK'),
@@ -93,7 +93,7 @@ export const en = {
       much: (at: string) =>
         `The recording has more values than the page keeps, from byte ${at} on. "trik cut" makes a piece of it.`,
       empty: () => 'The recording has no values of a robot.',
-    } as Record<What, (at: string, detail: string) => string>,
+    } as Record<RecordingFault, (at: string, detail: string) => string>,
   },
 
   programs: 'Programs',

@@ -1,4 +1,4 @@
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { scene, state } from './example';
 import { Gesture } from './gesture';
 import { loadOrder } from './load';
@@ -47,13 +47,15 @@ test('a marker leaves a line of its colour until it is up or the scene is told a
   expect(trail.marks).toEqual([]);
 });
 
-test('orders of a finger are told twenty times in a second, the last one always', async () => {
+test('orders of a finger are told twenty times in a second, the last one always', () => {
+  vi.useFakeTimers();
   const told: string[] = [];
   const paced = new Paced((order) => told.push(order));
   for (let at = 0; at < 100; at++) paced.put(`robot ${at}`);
   expect(told).toEqual(['robot 0']);
-  await new Promise((done) => setTimeout(done, 2 * PERIOD_MS));
+  vi.advanceTimersByTime(PERIOD_MS);
   expect(told).toEqual(['robot 0', 'robot 99']);
+  vi.useRealTimers();
 });
 
 test('one pointer pans or carries, two pinch', () => {

@@ -3,8 +3,8 @@
 // Owns how they look. The context takes metres; `scale` is how many of its pixels are one.
 
 import { MARKER_WIDTH } from './brush';
-import type { Trail, Way } from './trail';
-import type { Place, Scene, Sensor, Shape, Thing, WorldState } from './types';
+import type { Trail, Stroke } from './trail';
+import type { Place, Scene, Sensor, Shape, Movable, WorldState } from './types';
 
 /** Colours of the robots and their ways. They stand on the floor of the world, which no scheme of the page changes. */
 const INKS = ['#c2185b', '#1565c0', '#2e7d32', '#6a1b9a'];
@@ -57,7 +57,7 @@ export function drawMoving(
   });
 }
 
-function drawWay(context: Context, { points }: Way, colour: string, width: number): void {
+function drawWay(context: Context, { points }: Stroke, colour: string, width: number): void {
   if (points.length < 4) return;
   context.beginPath();
   let isDown = false;
@@ -92,7 +92,7 @@ function drawStart(context: Context, { start: [x, y, degrees] }: Scene, thin: nu
   context.restore();
 }
 
-function drawThing(context: Context, thing: Thing, [x, y, degrees]: Place, thin: number): void {
+function drawThing(context: Context, thing: Movable, [x, y, degrees]: Place, thin: number): void {
   const half = thing.size / 2;
   context.beginPath();
   if (thing.is === 'cube') {

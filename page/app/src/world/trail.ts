@@ -12,17 +12,17 @@ const NEAR = 0.002;
 const JUMP = 0.2;
 
 /** Points, x and y in turn; NaN where the way has a gap. */
-export interface Way {
+export interface Stroke {
   points: number[];
   colour: string;
 }
 
 export class Trail {
   /** The ways of robots, by their numbers. */
-  ways: Way[] = [];
+  ways: Stroke[] = [];
   /** What markers have left. */
-  marks: Way[] = [];
-  readonly #drawing = new Map<number, Way>();
+  marks: Stroke[] = [];
+  readonly #drawing = new Map<number, Stroke>();
 
   /** The next moment. */
   put(state: WorldState): void {
@@ -60,7 +60,7 @@ export class Trail {
   }
 }
 
-function extend({ points }: Way, x: number, y: number): void {
+function extend({ points }: Stroke, x: number, y: number): void {
   const beforeX = points[points.length - 2];
   const beforeY = points[points.length - 1];
   if (beforeX !== undefined && beforeY !== undefined) {

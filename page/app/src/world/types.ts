@@ -24,7 +24,7 @@ export interface Item {
 export type Mark = [x: number, y: number, toX: number, toY: number, colour: string];
 
 /** Something that can be moved. */
-export interface Thing {
+export interface Movable {
   is: 'ball' | 'skittle' | 'cube';
   size: number;
   colour: string;
@@ -67,7 +67,7 @@ export interface Scene {
   /** The lowest first. */
   items: Item[];
   marks: Mark[];
-  things: Thing[];
+  things: Movable[];
   start: Place;
   robots: Shape[];
   locked: { world: boolean; robot: boolean };
