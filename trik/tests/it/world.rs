@@ -16,11 +16,20 @@ const WORLD: &str = r##"<root version="20251219"><world>
 </sensors><wheels left="M3###output######M3" right="M4###output######M4"/></robot></robots>
 <settings realisticPhysics="false" realisticSensors="false" realisticMotors="false"/></root>"##;
 
-/// Drives on the line and stops there.
+/// Drives on the line and stops there. On a busy computer it may pass the line unseen; then it turns back before the wall,
+/// and comes again.
 const TO_THE_LINE: &str = "
-brick.motor(M3).setPower(40);
-brick.motor(M4).setPower(40);
-while (brick.sensor(A3).read() < 60) script.wait(1);
+function drive(power) {
+  brick.motor(M3).setPower(power);
+  brick.motor(M4).setPower(power);
+}
+drive(20);
+while (brick.sensor(A3).read() < 60) {
+  var ahead = brick.sensor(A1).read();
+  if (ahead < 25) drive(-20);
+  else if (ahead > 76) drive(20);
+  script.wait(1);
+}
 brick.stop();
 print('on the line');
 ";
