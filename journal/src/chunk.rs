@@ -11,20 +11,18 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::Read as _;
 
 /// Opcode and length of a record.
-const HEADER_BYTES: usize = 9;
+pub(crate) const HEADER_BYTES: usize = 9;
 
 /// The bytes of a chunk's record without its opcode and length, checked.
-pub(crate) struct Chunk {
-    /// As a record again.
-    record: Vec<u8>,
-}
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chunk<'a>(&'a [u8]);
 
-impl Chunk {
+impl<'a> Chunk<'a> {
     /// Checks what can be checked before its records are read.
     ///
     /// # Errors
     /// It is damaged.
-    pub fn of(data: &[u8]) -> Result<Self, Error> {
+    pub fn of(data: &'a [u8]) -> Result<Self, Error> {
         let damaged = || Error::Damaged("a chunk".to_owned());
         let read = mcap::parse_record(op::CHUNK, data).map_err(Error::reading)?;
         let Record::Chunk {
@@ -37,11 +35,7 @@ impl Chunk {
         if header.compression.is_empty() && !fill(&records) {
             return Err(damaged());
         }
-        let mut record = Vec::with_capacity(HEADER_BYTES + data.len());
-        record.push(op::CHUNK);
-        record.extend((data.len() as u64).to_le_bytes());
-        record.extend(data);
-        Ok(Self { record })
+        Ok(Self(data))
     }
 
     /// Gives its records with their opcodes, once its checksum was found right, until one is the last that is wanted;
@@ -50,7 +44,7 @@ impl Chunk {
     /// # Errors
     /// It is damaged, or somebody fails with a record.
     pub fn each<E: From<Error>>(
-        &self,
+        self,
         mut take: impl FnMut(u8, &[u8]) -> Result<bool, E>,
     ) -> Result<bool, E> {
         let options = LinearReaderOptions::default()
@@ -60,7 +54,9 @@ impl Chunk {
             .with_prevalidate_chunk_crcs(true)
             .with_record_length_limit(RECORD_BYTES_MAX);
         let mut reader = LinearReader::new_with_options(options);
-        let mut rest = &self.record[..];
+        let mut header = [op::CHUNK; HEADER_BYTES];
+        header[1..].copy_from_slice(&(self.0.len() as u64).to_le_bytes());
+        let mut rest = header.chain(self.0);
         while let Some(event) = reader.next_event() {
             match event.map_err(Error::reading)? {
                 LinearReadEvent::ReadRequest(wanted) => {
@@ -134,5 +130,8 @@ mod tests {
         }
         let half = [0x80, 0, 0, 0];
         assert!(taken(&chunk(&half, 4)).is_err());
+        // The record goes on in what follows the chunk's own bytes.
+        let beyond = [0x80, 5, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5];
+        assert!(taken(&chunk(&beyond, 9)).is_err());
     }
 }

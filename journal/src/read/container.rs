@@ -3,13 +3,14 @@
 //! Owns every check of lengths, places and checksums, made before memory is taken or bytes are believed, and the way of chunks
 //! into the indexed reader of the library. What messages mean is not known here.
 
+use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{INFLATION_MAX, RECORD_BYTES_MAX, SUMMARY_BYTES_MAX};
 use mcap::Summary;
 use mcap::records::op;
 use mcap::sans_io::{
-    IndexedReadEvent, IndexedReader, IndexedReaderOptions, LinearReadEvent, LinearReader,
-    LinearReaderOptions, SummaryReadEvent, SummaryReader, SummaryReaderOptions,
+    IndexedReadEvent, IndexedReader, IndexedReaderOptions, SummaryReadEvent, SummaryReader,
+    SummaryReaderOptions,
 };
 use std::io::{Read, Seek, SeekFrom};
 
@@ -169,24 +170,15 @@ fn read_chunk<'a, F: Read + Seek>(
 
 /// Whether a chunk, as a whole record, has the bytes that its checksum is of.
 fn check_sum(record: &[u8]) -> Result<(), Error> {
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(RECORD_BYTES_MAX);
-    let mut reader = LinearReader::new_with_options(options);
-    let mut rest = record;
-    while let Some(event) = reader.next_event() {
-        match event.map_err(Error::reading)? {
-            LinearReadEvent::ReadRequest(wanted) => {
-                let size = rest.read(reader.insert(wanted))?;
-                reader.notify_read(size);
-            }
-            // The sum was right, or nothing in it would be told.
-            LinearReadEvent::Record { .. } => return Ok(()),
-        }
+    let damaged = || Error::Damaged("an index leads to no chunk".to_owned());
+    let (header, data) = record.split_at_checked(HEADER_BYTES).ok_or_else(damaged)?;
+    if header[0] != op::CHUNK || u64_at(header, 1) != u64::try_from(data.len()).ok() {
+        return Err(damaged());
     }
-    Ok(())
+    // The sum is right, or nothing in it is told.
+    Chunk::of(data)?
+        .each(|_, _| Ok::<bool, Error>(false))
+        .map(drop)
 }
 
 fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
