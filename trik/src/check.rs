@@ -16,6 +16,7 @@ mod points;
 mod pool;
 mod row;
 mod run;
+mod sandbox_args;
 mod script;
 mod verdict;
 mod walk;
@@ -79,6 +80,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     }
     refuse_present(&jobs, args, jobs.len() == 1)?;
     tell_left_out(args);
+    let args = &sandbox_args::settle(&jobs, args)?;
     if let Some(platform) = args.platform {
         return answer(&jobs, args, platform);
     }
@@ -171,6 +173,7 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
     refuse_present(&jobs, &args, false)?;
     say(&plan.notes);
     tell_passed(&plan.left_out, plan.left_out_count, args.language);
+    let args = sandbox_args::settle(&jobs, &args)?;
     let grades = Grades::new(plan, &args.grades, args.language);
     let grades = (!outputs.is_empty()).then_some((grades, &outputs[..]));
     many(&jobs, &args, results, grades)

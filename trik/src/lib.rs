@@ -3,7 +3,7 @@
 //! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
-//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them, `dap` does so for editors,
+//! `script` runs programs with text for it, `sandbox` confines those in Python, `debug` stops diagrams and goes back in them, `dap` does so for editors,
 //! `record` writes what a tree gives into a file, `replay` makes a tree of it, `recording` looks into such files,
 //! `bridges` serves a tree for tools of other people. All of them stand on `error`, `refusal`, `input`, `output`,
 //! `terminal`, `language`, `pattern` and `chart`, which know no command. Nothing of this runs on the controller.
@@ -31,6 +31,7 @@ mod recording;
 mod refusal;
 mod remote;
 mod replay;
+pub mod sandbox;
 pub mod script;
 mod task;
 mod terminal;

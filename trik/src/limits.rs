@@ -80,6 +80,26 @@ pub const SCRIPT_FILES_BYTES: usize = 16 << 20;
 pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
 /// Bytes of one message of a judged program in a process of its own.
 pub const SCRIPT_FRAME_BYTES: usize = 1 << 20;
+/// Processes and threads of a judged program: the threads that it may have, and some more.
+pub const SCRIPT_PROCESSES: u64 = 80;
+/// Those of its control group, in which the process is that waits for it.
+pub const GROUP_PROCESSES: u64 = 96;
+/// Open files of each of them.
+pub const SCRIPT_OPEN_FILES: u64 = 128;
+/// Bytes of one file that it writes.
+pub const SCRIPT_FILE_BYTES: u64 = 64 << 20;
+/// Size of its scratch folder in memory, in MiB.
+pub const SCRIPT_SCRATCH_MIB: u32 = 64;
+/// Files in it.
+pub const SCRIPT_SCRATCH_FILES: u32 = 4096;
+/// What a process of it may compute beyond the real time of the run.
+pub const SCRIPT_CPU_GRACE_S: u64 = 2;
+/// Folders of solutions for which is asked in advance whether nobody could read them.
+pub const SANDBOX_FOLDERS: usize = 500;
+/// Folders that Python names as those that it reads.
+pub const PYTHON_PATHS: usize = 64;
+/// Bytes of what it says of that.
+pub const PYTHON_PATHS_BYTES: u64 = 64 << 10;
 /// Remarks about a judged program that are kept.
 pub const SCRIPT_REMARKS: usize = 20;
 /// Threads of a judged program whose lines are kept.

@@ -59,6 +59,8 @@ pub struct Checker {
     has_looked: bool,
     /// Entries, counted with those that were left out.
     told: usize,
+    /// Bytes of them.
+    told_bytes: usize,
     /// Whether it was said that entries are left out.
     is_full: bool,
     outcome: Outcome,
@@ -85,6 +87,7 @@ impl Checker {
             found: vec![None; rules.slots],
             has_looked: false,
             told: 0,
+            told_bytes: 0,
             is_full: false,
             outcome: Outcome::default(),
             verdict: Verdict::Open,
@@ -237,6 +240,7 @@ impl Checker {
             rules: &self.rules,
             states: &mut self.states,
             told: &mut self.told,
+            told_bytes: &mut self.told_bytes,
             is_full: &mut self.is_full,
             outcome: &mut self.outcome,
             entries,
@@ -262,6 +266,7 @@ struct Run<'a> {
     rules: &'a Rules,
     states: &'a mut [State],
     told: &'a mut usize,
+    told_bytes: &'a mut usize,
     is_full: &'a mut bool,
     outcome: &'a mut Outcome,
     entries: &'a mut Vec<Entry>,
@@ -547,15 +552,21 @@ impl Run<'_> {
             self.flush();
         }
         *self.told = self.told.saturating_add(1);
-        if *self.told > limits::CONSTRAINT_ENTRIES_MAX && !must {
+        let bytes = self.told_bytes.saturating_add(text.len());
+        let is_long = bytes > limits::CONSTRAINT_ENTRIES_BYTES;
+        if (is_long || *self.told > limits::CONSTRAINT_ENTRIES_MAX) && !must {
             if *self.is_full {
                 return;
             }
             *self.is_full = true;
-            let words = words::too_many_messages();
+            let words = match is_long {
+                true => words::too_long_messages(),
+                false => words::too_many_messages(),
+            };
             self.push(Level::Critical, words.in_locale(self.locale).to_owned());
             return;
         }
+        *self.told_bytes = bytes;
         self.push(level, text);
     }
 

@@ -16,6 +16,8 @@ pub const NAMES_COMPARED: usize = 500;
 pub const TIME_LIMIT_SHORT_MS: u32 = 100;
 /// Entries of one report that are no verdict.
 pub const CONSTRAINT_ENTRIES_MAX: usize = 10_000;
+/// Bytes of all of them.
+pub const CONSTRAINT_ENTRIES_BYTES: usize = 8 << 20;
 /// Different errors of rules that are remembered, and errors of one event that are told.
 pub const CONSTRAINT_COMPLAINTS_MAX: usize = 100;
 /// Bytes of one message with its places filled.

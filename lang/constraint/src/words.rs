@@ -121,6 +121,16 @@ pub(super) fn too_many_messages() -> Words {
     )
 }
 
+pub(super) fn too_long_messages() -> Words {
+    let most = limits::CONSTRAINT_ENTRIES_BYTES >> 20;
+    Words::new(
+        format!(
+            "messages of more than {most} MiB: what is too long is left out, look for an event without dropsOnFire"
+        ),
+        format!("сообщения длиннее {most} МиБ: лишнее опущено, ищите событие без dropsOnFire"),
+    )
+}
+
 pub(super) fn not_constraints() -> Words {
     Words::new(
         "Root element must be \"constraints\" tag",

@@ -61,7 +61,7 @@ pub fn open(bytes: &[u8], problems: &mut Vec<Problem>) -> Result<Archive, Proble
         problems,
         entries: Vec::new(),
         places: HashMap::new(),
-        unpacked: 0,
+        claimed: 0,
         records: 0,
     };
     let container = if bytes.starts_with(b"PK") {
@@ -118,7 +118,7 @@ struct Pieces<'a> {
     problems: &'a mut Vec<Problem>,
     entries: Vec<Entry>,
     places: HashMap<String, usize>,
-    unpacked: usize,
+    claimed: usize,
     records: usize,
 }
 
@@ -132,18 +132,22 @@ impl Pieces<'_> {
         Ok(())
     }
 
-    /// How many bytes the next piece, which says that it has `claimed`, may have.
-    fn allowance(&self, name: &str, claimed: usize) -> Result<usize, Problem> {
-        let rest = limits::SAVE_UNPACKED_BYTES - self.unpacked;
+    /// Refuses a piece of so many packed bytes that says it has `claimed` if there would be too many: nothing is
+    /// unpacked before all have been asked.
+    fn admit(&mut self, name: &str, packed: usize, claimed: usize) -> Result<(), Problem> {
+        let rest = limits::SAVE_UNPACKED_BYTES - self.claimed;
         if claimed > limits::ENTRY_BYTES.min(rest) {
             return Err(in_file(name, words::bomb()));
         }
-        Ok(claimed)
+        if claimed > packed.saturating_mul(limits::UNPACKED_BYTES_OF_ONE) {
+            return Err(in_file(name, words::damaged()));
+        }
+        self.claimed += claimed;
+        Ok(())
     }
 
     /// Takes a piece; of two with one name the later one counts, as when both are unpacked over each other.
     fn add(&mut self, name: &str, bytes: Vec<u8>) {
-        self.unpacked += bytes.len();
         let Some(name) = self.safe(name) else {
             return;
         };

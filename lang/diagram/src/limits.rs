@@ -6,6 +6,8 @@ pub const SAVE_BYTES: usize = 32 << 20;
 pub const SAVE_UNPACKED_BYTES: usize = 48 << 20;
 /// Bytes of one unpacked entry: the largest real ones are embedded images.
 pub const ENTRY_BYTES: usize = 24 << 20;
+/// How many bytes one packed byte can become: no stream of deflate does better (zlib's own documentation).
+pub const UNPACKED_BYTES_OF_ONE: usize = 1032;
 /// Entries of a save; the largest real one has 1500. What a zip without extensions can count.
 pub const ENTRIES: usize = 65_535;
 /// Bytes of an entry's name.

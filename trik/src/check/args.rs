@@ -4,6 +4,7 @@
 
 use super::grade_args::GradeArgs;
 use super::platform::Platform;
+use super::sandbox_args::SandboxArgs;
 use crate::{language, limits};
 use clap::Args;
 use lang_text::problem::Locale;
@@ -98,6 +99,9 @@ pub(crate) struct CheckArgs {
     /// Maximum memory of one process, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(64..=65536))]
     pub memory: u32,
+    /// What programs in Python are confined by.
+    #[command(flatten)]
+    pub sandbox: SandboxArgs,
     /// Seed of everything random. The same seed gives the same run.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
@@ -150,6 +154,7 @@ impl CheckArgs {
                 words.push(name.into());
             }
         }
+        words.extend(self.sandbox.for_worker());
         words.extend([
             format!("--time-limit={}", self.time_limit).into(),
             format!("--wall-limit={}", self.wall_limit).into(),

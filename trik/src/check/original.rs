@@ -8,6 +8,7 @@ use super::args::CheckArgs;
 use super::jobs::Job;
 use super::pool;
 use super::run::text;
+use super::sandbox_args;
 use crate::diagrams::generate::{self, GenArgs};
 use crate::diagrams::save::must_open;
 use crate::error::Error;
@@ -217,6 +218,13 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
     };
     let is_input_there = named(&args.input).is_none_or(|path| path.exists());
     let check = wanted(args, is_script);
+    let check = match sandbox_args::settle(std::slice::from_ref(&job), &check) {
+        Ok(check) => check,
+        Err(refusal) => {
+            say(&refusal.lines);
+            return refusal.code;
+        }
+    };
     let row = pool::run_one(job, &check);
     if !is_input_there {
         // check-solution.sh names a file for each field, whether there is one or not: that is no error.
@@ -257,6 +265,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         time_limit: limits::MODEL_SECONDS_MAX,
         wall_limit: limits::WALL_SECONDS_MAX,
         memory: 1024,
+        sandbox: Default::default(),
         seed: 1,
         language: language::of_system(),
         worker: false,

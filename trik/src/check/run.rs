@@ -313,7 +313,9 @@ impl Solution {
             }
         };
         let script = match script {
-            None if args.is_embedded => Some(embedded(&project, path).map_err(Refused::broken)?),
+            None if args.is_embedded => {
+                Some(script::embedded(&project, path).map_err(Refused::broken)?)
+            }
             script => script,
         };
         let file = args.script.as_deref().unwrap_or(path).to_owned();
@@ -391,6 +393,7 @@ impl Solution {
                 seed: args.seed,
                 is_watched: args.explain || args.html.is_some(),
                 wall_seconds: args.wall_limit,
+                sandbox: args.sandbox.sandbox(),
             };
             return script::open(*language, text, given).map_err(|why| line(why).into());
         }
@@ -494,21 +497,6 @@ fn world(args: &CheckArgs) -> World {
         mailbox: false,
         gamepad: args.gamepad.is_some(),
     }
-}
-
-/// The program that a save holds beside its diagram.
-fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Lines> {
-    let key = |name| project.meta.get(name).filter(|value| !value.is_empty());
-    let (Some(code), ending) = (key("activeCode"), key("activeCodeLanguageExtension")) else {
-        return Err(vec![format!(
-            "{}: there is no program with text in it",
-            shown(path)
-        )]);
-    };
-    let ending = ending.map_or("js", |ending| ending);
-    let language = Language::of_ending(ending)
-        .ok_or_else(|| vec![format!("{}: there is no language '{ending}'", shown(path))])?;
-    Ok((language, code.clone()))
 }
 
 fn lines(path: &Path, problems: &[Problem], locale: Locale) -> Lines {

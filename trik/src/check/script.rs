@@ -2,8 +2,13 @@
 //!
 //! Owns which language a file is in. Knows no engine from inside.
 
+use super::jobs::shown;
+use super::run::Lines;
+use crate::diagrams::save;
 use crate::error::Error;
+use crate::sandbox::Sandbox;
 use crate::script::{JavaScript, Python};
+use lang_diagram::project::Project;
 use sim::judge::Program;
 use std::path::Path;
 use std::time::Duration;
@@ -34,7 +39,7 @@ impl Language {
 }
 
 /// What a program is given beside its text.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Setup<'a> {
     /// Where its text comes from.
     pub file: &'a Path,
@@ -44,6 +49,8 @@ pub(super) struct Setup<'a> {
     pub is_watched: bool,
     /// Longest run in seconds of real time.
     pub wall_seconds: f64,
+    /// What a program in Python is confined by.
+    pub sandbox: Sandbox,
 }
 
 /// Makes a program ready to run.
@@ -65,11 +72,35 @@ pub(super) fn open(
         }
         Language::Python => {
             let longest = Duration::from_secs_f64(given.wall_seconds);
-            let python = Python::new(given.file, text, given.seed, longest)?;
+            let python = Python::new(given.file, text, given.seed, longest, given.sandbox)?;
             Ok(Box::new(match given.is_watched {
                 true => python.watched(),
                 false => python,
             }))
         }
     }
+}
+
+/// Whether the program that a save holds beside its diagram is in Python.
+pub(super) fn embeds_python(path: &Path) -> bool {
+    let language = |project: &Project| {
+        let ending = project.meta.get("activeCodeLanguageExtension")?;
+        Language::of_ending(ending)
+    };
+    save::open(path).is_ok_and(|opened| language(&opened.project) == Some(Language::Python))
+}
+
+/// The program that a save holds beside its diagram.
+pub(super) fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Lines> {
+    let key = |name| project.meta.get(name).filter(|value| !value.is_empty());
+    let (Some(code), ending) = (key("activeCode"), key("activeCodeLanguageExtension")) else {
+        return Err(vec![format!(
+            "{}: there is no program with text in it",
+            shown(path)
+        )]);
+    };
+    let ending = ending.map_or("js", |ending| ending);
+    let language = Language::of_ending(ending)
+        .ok_or_else(|| vec![format!("{}: there is no language '{ending}'", shown(path))])?;
+    Ok((language, code.clone()))
 }

@@ -1,8 +1,8 @@
 //! Python under a judge: a child process whose every question about the robot and time comes here.
 //!
 //! Owns the process, its time and its end. `virtual.py` is the other side: it runs one thread at a time and asks when all
-//! of them wait. `virtual.py` also confines
-//! it: no network, few processes, short files. What its user may read and write it may too.
+//! of them wait. What it may do on the computer is
+//! known to `sandbox`.
 
 use super::input::{GAMEPAD, Input, KEYS};
 use super::lines::Lines;
@@ -11,6 +11,7 @@ use super::tree::Tree;
 use super::{START_MS, drawing, problem};
 use crate::error::Error;
 use crate::limits;
+use crate::sandbox::Sandbox;
 use frame::{Decoder, encode};
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::machine::Status;
@@ -21,7 +22,7 @@ use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command as Process, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use trikd::js::events::Record;
 use trikd::program::python::MODULE;
@@ -48,6 +49,7 @@ pub struct Python {
     text: String,
     seed: u32,
     longest: Duration,
+    sandbox: Sandbox,
     child: Option<(Child, UnixStream)>,
     decoder: Decoder,
     until: Instant,
@@ -72,7 +74,13 @@ impl Python {
     ///
     /// # Errors
     /// The file is nowhere.
-    pub fn new(file: &Path, text: &str, seed: u32, longest: Duration) -> Result<Self, Error> {
+    pub fn new(
+        file: &Path,
+        text: &str,
+        seed: u32,
+        longest: Duration,
+        sandbox: Sandbox,
+    ) -> Result<Self, Error> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let absolute = std::path::absolute(file)
             .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
@@ -82,6 +90,7 @@ impl Python {
             text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned(),
             seed,
             longest,
+            sandbox,
             child: None,
             decoder: Decoder::new(limits::SCRIPT_FRAME_BYTES),
             until: Instant::now(),
@@ -114,19 +123,11 @@ impl Python {
 
     fn start(&mut self) -> io::Result<()> {
         let (ours, theirs) = UnixStream::pair()?;
-        let kept = ["PATH", "HOME"].map(|name| (name, std::env::var_os(name)));
-        let kept = kept
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)));
-        let child = Process::new("python3")
-            .args(["-s", "-B", "-c", BOOT])
-            .env_clear()
-            .envs(kept)
-            .envs([
-                ("PYTHONHASHSEED", "0"),
-                ("TZ", "UTC"),
-                ("LC_ALL", "C.UTF-8"),
-            ])
+        let folder = self.file.parent().unwrap_or(Path::new("/"));
+        let arguments = ["-s", "-B", "-c", BOOT];
+        let child = self
+            .sandbox
+            .command(&arguments, folder, self.longest)?
             .stdin(Stdio::from(OwnedFd::from(theirs)))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
@@ -136,9 +137,8 @@ impl Python {
         let mut channel = ours;
         channel.set_write_timeout(Some(self.longest))?;
         let program = format!("{}\n{}", self.file.display(), self.text);
-        let seconds = self.longest.as_secs_f64().to_string();
         let watched = if self.lines.is_some() { "1" } else { "0" };
-        let sent = [MODULE, &program, &self.seed.to_string(), &seconds, watched]
+        let sent = [MODULE, &program, &self.seed.to_string(), watched]
             .iter()
             .try_for_each(|text| channel.write_all(&encode(text.as_bytes())));
         self.child = Some((child, channel));
@@ -397,6 +397,7 @@ impl Python {
         }
         let _ = child.kill();
         let _ = child.wait();
+        self.sandbox.leave(child.id());
     }
 
     fn status(&self) -> Status {

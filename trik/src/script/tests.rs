@@ -1,6 +1,7 @@
 //! Programs under a judge, on a stand-in for a robot: time, threads, ends, failures, files, events.
 
 use super::*;
+use crate::sandbox::Sandbox;
 use lang_diagram::machine::{STEP_MS, Status};
 use lang_diagram::ports::Port;
 use lang_diagram::stand_in::{Placing, StandIn};
@@ -233,7 +234,8 @@ fn the_display_and_the_marker_tell_what_blocks_tell() {
 
 fn python(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
     let wall = Duration::from_secs(60);
-    let mut program = Python::new(Path::new("/nowhere/p.py"), text, 1, wall).unwrap();
+    let mut program =
+        Python::new(Path::new("/nowhere/p.py"), text, 1, wall, Sandbox::open()).unwrap();
     drive(&mut program, ms, robot)
 }
 
@@ -361,6 +363,7 @@ fn python_that_never_ends_or_fails_is_ended_and_says_where() {
         "sum(range(10 ** 12))",
         1,
         Duration::from_millis(300),
+        Sandbox::open(),
     )
     .unwrap();
     let (_, error) = drive(&mut slow, 1000, &mut robot());

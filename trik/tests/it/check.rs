@@ -5,6 +5,7 @@
 mod class;
 mod jobs;
 mod limits;
+mod sandbox;
 mod unsaid;
 
 use crate::diagrams::root;

@@ -434,6 +434,34 @@ fn triggers_may_stand_in_triggers() {
 }
 
 #[test]
+fn long_messages_in_each_tick_take_bounded_memory_and_the_verdict_is_told_all_the_same() {
+    let long = "x".repeat(1 << 20);
+    let again = r#"settedUpInitially="true" dropsOnFire="false""#;
+    for deed in ["message", "log"] {
+        let storm = event(
+            &format!("id=\"a\" {again}"),
+            "<true/>",
+            &format!("<{deed} text=\"{long}\"/>"),
+        );
+        let mut run = Run::new(&storm);
+        run.ticks(1000);
+        let bytes: usize = run.entries.iter().map(|entry| entry.text.len()).sum();
+        assert!(bytes <= limits::CONSTRAINT_ENTRIES_BYTES + 1000, "{bytes}");
+        assert_eq!(
+            run.entries.len(),
+            (limits::CONSTRAINT_ENTRIES_BYTES >> 20) + 1
+        );
+        let last = run.entries.last().unwrap();
+        assert!(
+            last.text.starts_with("messages of more than 8 MiB"),
+            "{}",
+            last.text
+        );
+        assert_eq!(last.level, Level::Critical);
+    }
+}
+
+#[test]
 fn a_storm_of_messages_is_cut_off_and_the_verdict_is_told_all_the_same() {
     let storm = event(
         r#"id="a" settedUpInitially="true" dropsOnFire="false""#,

@@ -15,7 +15,7 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Problem> {
-    let mut unpacker = Unpacker::new();
+    let mut list = Vec::new();
     let mut at = 0;
     while at < bytes.len() {
         pieces.count()?;
@@ -42,10 +42,17 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
         let damaged = || in_file(&name, words::damaged());
         let claimed = number(piece, 0).map(u32::from_be_bytes);
         let claimed = claimed.filter(|&claimed| claimed > 0).ok_or_else(damaged)?;
-        let allowed = pieces.allowance(&name, claimed as usize)?;
-        let unpacked = unpacker.unpack(&piece[4..], allowed).ok_or_else(damaged)?;
-        pieces.add(&name, unpacked);
+        let claimed = claimed as usize;
+        let packed = &piece[4..];
+        pieces.admit(&name, packed.len(), claimed)?;
+        list.push((name, packed, claimed));
         at = end;
+    }
+    let mut unpacker = Unpacker::new();
+    for (name, packed, claimed) in list {
+        let unpacked = unpacker.unpack(packed, claimed);
+        let unpacked = unpacked.ok_or_else(|| in_file(&name, words::damaged()))?;
+        pieces.add(&name, unpacked);
     }
     Ok(())
 }

@@ -175,6 +175,56 @@ fn bombs_are_refused_before_they_are_unpacked() {
     assert!(refused(&bytes).contains("damaged"));
 }
 
+#[test]
+fn nothing_is_unpacked_of_a_save_that_would_be_too_large() {
+    let piece = vec![0; limits::ENTRY_BYTES];
+    // The first piece is damaged, which only who unpacks it finds.
+    let mut zip = pack(&[entry("a", &piece), entry("b", &piece), entry("c", &piece)]).unwrap();
+    zip[40..60].fill(0xff);
+    let reason = refused(&zip);
+    assert!(
+        reason.starts_with("c: unpacked it is too large"),
+        "{reason}"
+    );
+    let mut old = stream(&[("/a", &piece), ("/b", &piece), ("/c", &piece)]);
+    old[20..40].fill(0xff);
+    let reason = refused(&old);
+    assert!(
+        reason.starts_with("/c: unpacked it is too large"),
+        "{reason}"
+    );
+}
+
+#[test]
+fn what_no_packed_bytes_can_become_is_refused_before_it_is_unpacked() {
+    let mut zip = pack(&[entry("a", &[0; 1000]), entry("b", &[1; 1000])]).unwrap();
+    zip[31..34].fill(0xff);
+    assert!(refused(&zip).starts_with("a: it is damaged"));
+    let directory = find(&zip, 0x0201_4b50);
+    zip[directory + 24..directory + 28].copy_from_slice(&20_000_000_u32.to_le_bytes());
+    let reason = refused(&zip);
+    assert!(reason.starts_with("b: it is damaged"), "{reason}");
+}
+
+#[test]
+fn a_save_inside_of_a_save_stays_packed() {
+    let mut inner = pack(&[entry("0", &vec![0; 1 << 20])]).unwrap();
+    for depth in 0..20 {
+        inner = pack(&[
+            entry(&format!("{depth}.qrs"), &inner),
+            entry("x.zip", &inner),
+        ])
+        .unwrap();
+        assert!(inner.len() < limits::ENTRY_BYTES);
+        let (archive, _) = opened(&inner);
+        let bytes: usize = archive.entries.iter().map(|one| one.bytes.len()).sum();
+        assert!(archive.entries.len() == 2 && bytes < limits::SAVE_UNPACKED_BYTES);
+        if bytes * 2 > limits::ENTRY_BYTES / 4 {
+            break;
+        }
+    }
+}
+
 /// The list of a zip with one entry, a number of times and each time with another name of the same length or not.
 fn listed_again(zip: &[u8], count: u8, has_other_names: bool) -> Vec<u8> {
     let end = find(zip, 0x0605_4b50);

@@ -37,7 +37,7 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
     }
     // An honest zip holds each packed byte once; one that counts bytes twice wants to cost time.
     let mut budget = bytes.len() as u64;
-    let mut unpacker = Unpacker::bare();
+    let mut list = Vec::with_capacity(zip.len());
     for at in 0..zip.len() {
         pieces.count()?;
         let entry = zip.by_index_data(at).map_err(damaged)?;
@@ -49,9 +49,14 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
             .checked_sub(entry.compressed_size())
             .ok_or_else(|| in_file(&name, words::overlaps()))?;
         let claimed = usize::try_from(entry.size()).unwrap_or(usize::MAX);
-        let allowed = pieces.allowance(&name, claimed)?;
-        let piece =
-            take(&mut zip, at, allowed, &mut unpacker).map_err(|words| in_file(&name, words))?;
+        let packed = usize::try_from(entry.compressed_size()).unwrap_or(usize::MAX);
+        pieces.admit(&name, packed, claimed)?;
+        list.push((name, claimed));
+    }
+    let mut unpacker = Unpacker::bare();
+    for (at, (name, claimed)) in list.into_iter().enumerate() {
+        let piece = take(&mut zip, at, claimed, &mut unpacker);
+        let piece = piece.map_err(|words| in_file(&name, words))?;
         pieces.add(&name, piece);
     }
     Ok(())

@@ -1,0 +1,190 @@
+//! The outer step: makes the namespaces, starts the inner step in them, and waits for its end.
+//!
+//! A namespace of processes begins with the next child, so somebody has to stay outside. Owns which user the program
+//! will be.
+
+use super::layer::Layer;
+use super::order::{Order, Step};
+use super::{NAME, SELF, group};
+use crate::error::Error;
+use nix::fcntl::{OFlag, open, openat};
+use nix::sched::{CloneFlags, unshare};
+use nix::sys::prctl::{set_dumpable, set_pdeathsig};
+use nix::sys::resource::{Resource, getrlimit};
+use nix::sys::signal::Signal;
+use nix::sys::stat::Mode;
+use nix::sys::utsname::uname;
+use nix::unistd::{
+    Gid, Uid, dup2_stdin, getegid, geteuid, getppid, setegid, seteuid, setgid, setgroups, setuid,
+    write,
+};
+use std::fs::{self, File};
+use std::os::fd::OwnedFd;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::Command;
+use trikd::program::kill;
+
+/// The user and the group that own nothing.
+pub(super) const NOBODY: u32 = 65534;
+/// Since which kernel processes are counted for each namespace of users.
+const COUNTS_APART: (u32, u32) = (5, 14);
+const NAMESPACES: [(CloneFlags, Layer); 4] = [
+    (CloneFlags::CLONE_NEWPID, Layer::Processes),
+    (CloneFlags::CLONE_NEWNS, Layer::Mounts),
+    (CloneFlags::CLONE_NEWNET, Layer::Network),
+    (CloneFlags::CLONE_NEWIPC, Layer::Messages),
+];
+
+/// Starts the program, and gives how it has ended.
+pub(super) fn run(mut order: Order) -> Result<u8, Error> {
+    let failed = |error: nix::Error| Error::system("sandbox", error);
+    set_pdeathsig(Signal::SIGKILL).map_err(failed)?;
+    if getppid().as_raw() != order.parent {
+        return Err(Error::system("sandbox", "the judge is gone"));
+    }
+    if let Some(base) = order.group.take() {
+        // The memory of one process is that of all.
+        let memory = getrlimit(Resource::RLIMIT_AS).map_err(failed)?.0;
+        group::enter(&base, memory).map_err(|error| Error::system("control group", error))?;
+    }
+    separate(&mut order);
+    // A change of the user clears it.
+    set_pdeathsig(Signal::SIGKILL).map_err(failed)?;
+    order.step = Step::Inner;
+    let mut inner = Command::new(SELF)
+        .arg0(NAME)
+        .args(order.write())
+        .spawn()
+        .map_err(|error| Error::system("sandbox", error))?;
+    // The way to the judge is the program's alone: when that closes it, it is closed.
+    if let Ok(null) = File::open("/dev/null") {
+        let _ = dup2_stdin(null);
+    }
+    let status = inner.wait();
+    let status = status.map_err(|error| Error::system("sandbox", error))?;
+    Ok(status
+        .code()
+        .and_then(|code| u8::try_from(code).ok())
+        .unwrap_or(1))
+}
+
+/// Leaves what can be left, and keeps what cannot.
+fn separate(order: &mut Order) {
+    let (uid, gid) = (geteuid(), getegid());
+    order
+        .without
+        .clone()
+        .into_iter()
+        .for_each(|layer| order.miss(layer));
+    let wanted: Vec<_> = NAMESPACES
+        .into_iter()
+        .filter(|(_, layer)| order.wants(*layer))
+        .collect();
+    let all = wanted
+        .iter()
+        .fold(CloneFlags::empty(), |all, one| all | one.0);
+    (order.uid, order.gid) = (uid.as_raw(), gid.as_raw());
+    let mut is_other = false;
+    if uid.is_root() {
+        (order.uid, order.gid) = (NOBODY, NOBODY);
+        if order.wants(Layer::User) && can_be_nobody(order) {
+            order.is_dropping = unshare(all).is_ok();
+            if order.is_dropping {
+                order.threads = threads(Uid::from_raw(NOBODY));
+                return;
+            }
+            // The root of a container makes no namespaces, but nobody may perhaps have one of users.
+            is_other = drop_rights().is_ok();
+        }
+        if !is_other {
+            order.miss(Layer::User);
+        }
+    }
+    order.is_alone = geteuid().is_root();
+    order.threads = threads(geteuid());
+    let (uid, gid) = (geteuid(), getegid());
+    let user = match order.wants(Layer::User) {
+        true => CloneFlags::CLONE_NEWUSER,
+        false => CloneFlags::empty(),
+    };
+    let is_whole = unshare(user | all).is_ok();
+    order.is_mapped = !user.is_empty() && (is_whole || unshare(user).is_ok());
+    if !is_whole {
+        for (flag, layer) in wanted {
+            if unshare(flag).is_err() {
+                order.miss(layer);
+            }
+        }
+    }
+    match order.is_mapped {
+        true => {
+            // Without it the inner step cannot mount, and says that.
+            let _ = open_self().and_then(|own| map(&own, (0, uid.as_raw()), (0, gid.as_raw())));
+        }
+        false if !is_other => order.miss(Layer::User),
+        false => {}
+    }
+}
+
+/// Whether nobody could read the program and Python.
+fn can_be_nobody(order: &Order) -> bool {
+    let nobody = || {
+        setgroups(&[])?;
+        setegid(Gid::from_raw(NOBODY))?;
+        seteuid(Uid::from_raw(NOBODY))
+    };
+    let can_read = |path: &Path| match path.is_dir() {
+        true => fs::read_dir(path).is_ok(),
+        false => File::open(path).is_ok(),
+    };
+    let mut paths = order.folders.iter().map(|folder| &**folder);
+    let interpreter = order.program.first().map(Path::new);
+    let can = nobody().is_ok()
+        && paths.all(can_read)
+        && interpreter.is_some_and(can_read)
+        // The inner step is this program.
+        && can_read(Path::new(SELF));
+    seteuid(Uid::from_raw(0)).is_ok() && setegid(Gid::from_raw(0)).is_ok() && can
+}
+
+/// Becomes nobody, for good.
+pub(super) fn drop_rights() -> nix::Result<()> {
+    setgroups(&[])?;
+    setgid(Gid::from_raw(NOBODY))?;
+    setuid(Uid::from_raw(NOBODY))?;
+    // Its own files of /proc were root's since then.
+    set_dumpable(true)
+}
+
+/// How many threads of a user there are, where they count against those of the program.
+fn threads(user: Uid) -> u64 {
+    let is_apart = uname().ok().is_some_and(|system| {
+        let release = system.release().to_string_lossy().into_owned();
+        let mut numbers = release.split(['.', '-']).map(str::parse);
+        let (major, minor) = (numbers.next(), numbers.next());
+        matches!((major, minor), (Some(Ok(major)), Some(Ok(minor))) if (major, minor) >= COUNTS_APART)
+    });
+    match is_apart {
+        true => 0,
+        false => kill::of_user(user),
+    }
+}
+
+/// The folder of this process in `/proc`, whatever is mounted over that later.
+pub(super) fn open_self() -> nix::Result<OwnedFd> {
+    let flags = OFlag::O_PATH | OFlag::O_DIRECTORY | OFlag::O_CLOEXEC;
+    open("/proc/self", flags, Mode::empty())
+}
+
+/// In a new namespace of users: which user and group inside is which outside.
+pub(super) fn map(own: &OwnedFd, user: (u32, u32), group: (u32, u32)) -> nix::Result<()> {
+    let put = |name: &str, text: &str| {
+        let file = openat(own, name, OFlag::O_WRONLY | OFlag::O_CLOEXEC, Mode::empty())?;
+        write(&file, text.as_bytes()).map(|_| ())
+    };
+    put("uid_map", &format!("{} {} 1", user.0, user.1))?;
+    // A kernel before 3.19 has no such file and does not ask for it.
+    let _ = put("setgroups", "deny");
+    put("gid_map", &format!("{} {} 1", group.0, group.1))
+}

@@ -1,0 +1,106 @@
+//! What is told of layers of the sandbox that are missing, in English and Russian.
+
+use super::layer::Layer;
+use lang_text::problem::{Locale, Words};
+
+/// A line for each missing layer: what it is, what follows, what to do.
+pub(crate) fn lacks(missing: &[Layer], is_root: bool, locale: Locale) -> Vec<String> {
+    let lines = missing.iter().map(|layer| {
+        let words = lack(*layer, is_root);
+        let words = Words::new(
+            format!(
+                "solutions in Python run without a layer of their sandbox: {}",
+                words.in_locale(Locale::English)
+            ),
+            format!(
+                "решения на Python запускаются без слоя песочницы: {}",
+                words.in_locale(Locale::Russian)
+            ),
+        );
+        words.in_locale(locale).to_owned()
+    });
+    lines.collect()
+}
+
+/// The head of the lines, where `--require-sandbox` was given.
+pub(crate) fn required(locale: Locale) -> String {
+    let words = Words::new(
+        "nothing was run, because --require-sandbox demands all layers",
+        "ничего не запущено: --require-sandbox требует все слои",
+    );
+    words.in_locale(locale).to_owned()
+}
+
+/// What a program is told that is not started.
+pub(super) fn refused(missing: &[Layer]) -> String {
+    let names: Vec<_> = missing.iter().map(|layer| layer.name()).collect();
+    format!(
+        "--require-sandbox demands layers that are missing: {}",
+        names.join(", ")
+    )
+}
+
+fn lack(layer: Layer, is_root: bool) -> Words {
+    match layer {
+        Layer::User if is_root => Words::new(
+            "user: their folder, or Python, can be read by root alone, so they run as root, without its rights; let everybody read them (chmod o+rX, also of the folders above), or run trik as a user that is not root",
+            "user: их папку или Python может читать только root, и они работают под root без его прав; разрешите чтение всем (chmod o+rX, и для папок выше) или запускайте trik не под root",
+        ),
+        Layer::User => Words::new(
+            "user: this kernel gives no namespace of users, so they run as your user; allow it (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0), or run trik as root, which makes them nobody",
+            "user: ядро не даёт пространства имён пользователей, и они работают под вашим пользователем; разрешите его (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0) или запускайте trik под root, тогда они станут nobody",
+        ),
+        Layer::Processes => Words::new(
+            "processes: without a namespace they see other processes, and what they start may outlive them for a moment; allow namespaces (in a container --cap-add SYS_ADMIN, or a seccomp profile that lets unshare pass)",
+            "processes: без пространства имён они видят другие процессы, а запущенное ими может ненадолго пережить их; разрешите пространства имён (в контейнере --cap-add SYS_ADMIN или профиль seccomp, пропускающий unshare)",
+        ),
+        Layer::Mounts => Words::new(
+            "mounts: without a namespace they see /proc and /sys of the computer and have no scratch folder; allow namespaces, and in a container a /proc without masks (--security-opt systempaths=unconfined)",
+            "mounts: без пространства имён они видят /proc и /sys компьютера, и у них нет временной папки; разрешите пространства имён, а в контейнере /proc без масок (--security-opt systempaths=unconfined)",
+        ),
+        Layer::Network => Words::new(
+            "network: without a namespace only the filter of calls keeps them from the network; allow namespaces, or run trik where there is no network",
+            "network: без пространства имён от сети их отделяет только фильтр вызовов; разрешите пространства имён или запускайте trik там, где нет сети",
+        ),
+        Layer::Messages => Words::new(
+            "messages: without a namespace they see shared memory of the computer; allow namespaces",
+            "messages: без пространства имён они видят разделяемую память компьютера; разрешите пространства имён",
+        ),
+        Layer::Calls => Words::new(
+            "calls: this kernel filters no system calls, so ptrace, mounts and sockets are kept from them by other layers alone; it needs CONFIG_SECCOMP_FILTER (Linux 3.5), on x86-64 or arm64",
+            "calls: ядро не фильтрует системные вызовы, и от ptrace, монтирования и сокетов защищают только другие слои; нужен CONFIG_SECCOMP_FILTER (Linux 3.5) на x86-64 или arm64",
+        ),
+        Layer::Files => Words::new(
+            "files: this kernel has no Landlock, so they read and write what their user may; it needs Linux 5.13 with landlock among its modules (lsm=landlock,... at boot)",
+            "files: в ядре нет Landlock, и они читают и пишут всё, что может их пользователь; нужен Linux 5.13 с модулем landlock (lsm=landlock,... при загрузке)",
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_layer_is_named_with_what_to_do() {
+        for locale in [Locale::English, Locale::Russian] {
+            for (layer, is_root) in Layer::ALL
+                .map(|layer| (layer, true))
+                .into_iter()
+                .chain([(Layer::User, false)])
+            {
+                let lines = lacks(&[layer], is_root, locale);
+                let start = format!(": {}: ", layer.name());
+                assert!(
+                    lines[0].contains(&start) && lines[0].contains("; "),
+                    "{lines:?}"
+                );
+            }
+        }
+        assert_ne!(
+            lacks(&[Layer::User], true, Locale::English),
+            lacks(&[Layer::User], false, Locale::English)
+        );
+        assert!(refused(&[Layer::Files, Layer::User]).ends_with("files, user"));
+    }
+}
