@@ -82,6 +82,8 @@ pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
 pub const SCRIPT_FRAME_BYTES: usize = 1 << 20;
 /// Processes and threads of a judged program: the threads that it may have, and some more.
 pub const SCRIPT_PROCESSES: u64 = 80;
+/// The greatest number of a process of one that Linux counts none for: more than the numbers that it keeps for itself.
+pub const SCRIPT_PID_MAX: u32 = 381;
 /// Those of its control group, in which the process is that waits for it.
 pub const GROUP_PROCESSES: u64 = 96;
 /// Open files of each of them.

@@ -153,6 +153,8 @@ impl Sandbox {
             reads: python.collect(),
             without: self.without.clone(),
             is_required: self.is_required,
+            // None at all would end a step at the first look of the kernel's clock.
+            cpu_s: limits::SCRIPT_CPU_GRACE_S,
             program: vec![program.into_os_string()],
             ..Order::default()
         })

@@ -13,6 +13,7 @@ use nix::sys::prctl::{set_no_new_privs, set_pdeathsig};
 use nix::sys::resource::{Resource, getrlimit, rlim_t, setrlimit};
 use nix::sys::signal::Signal;
 use nix::unistd::{getegid, geteuid, setsid};
+use std::fs;
 use std::io::Write;
 use std::os::fd::OwnedFd;
 use std::os::unix::process::CommandExt;
@@ -22,6 +23,9 @@ use std::process::Command;
 /// What is mounted over, so that nothing of it is seen.
 const SYSTEM: &str = "/sys";
 const PROC: &str = "/proc";
+const NUMBERS: &str = "/proc/sys/kernel/pid_max";
+/// Since which kernel the greatest number of a process is one of each namespace; before, it is the computer's.
+const NUMBERS_APART: (u32, u32) = (6, 14);
 /// The place of the scratch folder, which Linux has for files in memory.
 pub(super) const SCRATCH: &str = "/dev/shm";
 
@@ -49,7 +53,7 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     if order.wants(Layer::Files) && !files::confine(&order, &mounted) {
         order.miss(Layer::Files);
     }
-    if order.wants(Layer::Calls) && !calls::confine(order.is_alone) {
+    if order.wants(Layer::Calls) && !calls::confine(order.is_alone && !mounted.is_counted) {
         order.miss(Layer::Calls);
     }
     if order.is_probe {
@@ -75,6 +79,8 @@ pub(super) struct Mounted {
     is_whole: bool,
     /// A `/proc` that shows no other process.
     pub has_proc: bool,
+    /// The namespace has no numbers for more processes than a program may have.
+    is_counted: bool,
     /// A scratch folder.
     pub has_scratch: bool,
 }
@@ -90,6 +96,11 @@ fn mount_own(order: &Order) -> Mounted {
     let put = |kind: &str, place: &str, flags, data: &str| {
         mount(Some(kind), place, Some(kind), flags, Some(data)).is_ok()
     };
+    let is_counted = order.is_alone
+        && outer::is_since(NUMBERS_APART)
+        && order.has(Layer::Processes)
+        && put("proc", PROC, plain, "")
+        && fs::write(NUMBERS, limits::SCRIPT_PID_MAX.to_string()).is_ok();
     // With nothing but processes since Linux 5.8; a container may allow neither, and then nothing of it is seen.
     let has_proc = order.has(Layer::Processes)
         && (put("proc", PROC, shut, "subset=pid") || put("proc", PROC, shut, ""));
@@ -107,6 +118,7 @@ fn mount_own(order: &Order) -> Mounted {
     Mounted {
         is_whole: has_proc && is_shut,
         has_proc,
+        is_counted,
         has_scratch,
     }
 }

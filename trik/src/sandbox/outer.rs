@@ -63,10 +63,8 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     }
     let status = inner.wait();
     let status = status.map_err(|error| Error::system("sandbox", error))?;
-    Ok(status
-        .code()
-        .and_then(|code| u8::try_from(code).ok())
-        .unwrap_or(1))
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    code.ok_or_else(|| Error::system("sandbox", status))
 }
 
 /// Leaves what can be left, and keeps what cannot.
@@ -159,16 +157,20 @@ pub(super) fn drop_rights() -> nix::Result<()> {
 
 /// How many threads of a user there are, where they count against those of the program.
 fn threads(user: Uid) -> u64 {
-    let is_apart = uname().ok().is_some_and(|system| {
-        let release = system.release().to_string_lossy().into_owned();
-        let mut numbers = release.split(['.', '-']).map(str::parse);
-        let (major, minor) = (numbers.next(), numbers.next());
-        matches!((major, minor), (Some(Ok(major)), Some(Ok(minor))) if (major, minor) >= COUNTS_APART)
-    });
-    match is_apart {
+    match is_since(COUNTS_APART) {
         true => 0,
         false => kill::of_user(user),
     }
+}
+
+/// Whether the kernel is at least so new.
+pub(super) fn is_since(version: (u32, u32)) -> bool {
+    uname().ok().is_some_and(|system| {
+        let release = system.release().to_string_lossy().into_owned();
+        let mut numbers = release.split(['.', '-']).map(str::parse);
+        let (major, minor) = (numbers.next(), numbers.next());
+        matches!((major, minor), (Some(Ok(major)), Some(Ok(minor))) if (major, minor) >= version)
+    })
 }
 
 /// The folder of this process in `/proc`, whatever is mounted over that later.

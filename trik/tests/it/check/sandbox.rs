@@ -133,23 +133,26 @@ fn a_solution_has_no_sockets_mounts_and_namespaces() {
         "{TRIES}
 for family in (socket.AF_INET, socket.AF_UNIX, socket.AF_NETLINK, socket.AF_PACKET):
     tries('socket', lambda: socket.socket(family, socket.SOCK_RAW if family > 2 else socket.SOCK_STREAM).close())
+# Numbers of x86-64: mount, umount2, pivot_root, chroot, unshare, setns, bpf, perf_event_open, keyctl, userfaultfd,
+# io_uring_setup, kexec_load, and ptrace of programs of 32 bits in 64.
+is_known = os.uname().machine == 'x86_64'
 for number in (165, 166, 155, 161, 272, 308, 321, 298, 250, 323, 425, 246, 101 | 0x40000000):
-    tries(number, lambda: libc.syscall(number, 0, 0, 0, 0, 0))
+    tries(number, lambda: libc.syscall(number, 0, 0, 0, 0, 0) if is_known else -1)
 for flag in (0x20000, 0x10000000, 0x20000000, 0x40000000):
-    tries('clone', lambda: libc.syscall(56, flag | 17, 0, 0, 0, 0))
+    tries('clone', lambda: libc.syscall(56, flag | 17, 0, 0, 0, 0) if is_known else -1)
+tries('unshare', lambda: libc.unshare(0x10000000))
+tries('mount', lambda: libc.mount(b'none', os.getcwd().encode(), b'tmpfs', 0, 0))
+tries('system', lambda: os.listdir('/sys'))
 tries('pair', lambda: [one.close() for one in socket.socketpair()] and 0)
-print(os.listdir('/sys'), os.getgroups())
 "
     );
     let told = printed(&board, &program);
-    let (last, refused) = told.split_last().expect("lines");
-    let (pair, refused) = refused.split_last().expect("lines");
-    assert_eq!((refused.len(), &**pair), (21, "pair done"), "{told:?}");
+    let (pair, refused) = told.split_last().expect("lines");
+    assert_eq!((refused.len(), &**pair), (24, "pair done"), "{told:?}");
     assert!(
         refused.iter().all(|line| line.ends_with("refused")),
         "{told:?}"
     );
-    assert_eq!(last, "[] []");
 }
 
 #[test]
@@ -175,6 +178,7 @@ tries('remove', lambda: os.remove({dir:?} + '/class/beside.txt'))
 tries('kernel', lambda: open('/proc/sys/kernel/core_pattern', 'r+'))
 with tempfile.TemporaryFile() as file:
     file.write(b'scratch')
+    file.flush()
     def fill():
         for at in range(100):
             with open(tempfile.gettempdir() + '/%d' % at, 'wb') as one: one.write(bytes(1 << 20))
@@ -350,7 +354,13 @@ fn who_is_root_and_reads_what_nobody_else_may_is_told_so() {
     fs::set_permissions(board.path("class"), fs::Permissions::from_mode(0o700)).expect("its mode");
     let program = format!(
         "{TRIES}
-tries('fork', os.fork)
+children = 0
+try:
+    while children < 500:
+        if os.fork() == 0: os.read(os.pipe()[0], 1)
+        children += 1
+except OSError: pass
+tries('forks', lambda: -1 if children < 400 else 0)
 tries('kernel', lambda: open('/proc/sys/kernel/core_pattern', 'r+'))
 tries('password', lambda: open('/etc/shadow'))
 tries('owner', lambda: os.chown('class/a.py', 0, 0))
