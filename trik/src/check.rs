@@ -6,6 +6,7 @@
 
 mod args;
 mod class;
+mod confine;
 mod explain;
 mod grade_args;
 mod grades;
@@ -80,7 +81,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     }
     refuse_present(&jobs, args, jobs.len() == 1)?;
     tell_left_out(args);
-    let args = &sandbox_args::settle(&jobs, args)?;
+    let args = &confine::settle(&jobs, args)?;
     if let Some(platform) = args.platform {
         return answer(&jobs, args, platform);
     }
@@ -173,7 +174,7 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
     refuse_present(&jobs, &args, false)?;
     say(&plan.notes);
     tell_passed(&plan.left_out, plan.left_out_count, args.language);
-    let args = sandbox_args::settle(&jobs, &args)?;
+    let args = confine::settle(&jobs, &args)?;
     let grades = Grades::new(plan, &args.grades, args.language);
     let grades = (!outputs.is_empty()).then_some((grades, &outputs[..]));
     many(&jobs, &args, results, grades)

@@ -559,10 +559,7 @@ impl Run<'_> {
                 return;
             }
             *self.is_full = true;
-            let words = match is_long {
-                true => words::too_long_messages(),
-                false => words::too_many_messages(),
-            };
+            let words = words::too_many_messages();
             self.push(Level::Critical, words.in_locale(self.locale).to_owned());
             return;
         }

@@ -113,21 +113,14 @@ pub(super) fn message_too_long() -> Words {
 
 pub(super) fn too_many_messages() -> Words {
     let most = limits::CONSTRAINT_ENTRIES_MAX;
+    let mib = limits::CONSTRAINT_ENTRIES_BYTES >> 20;
     Words::new(
         format!(
-            "more than {most} messages: the rest is left out, look for an event without dropsOnFire"
+            "more than {most} messages, or {mib} MiB of them: the rest is left out, look for an event without dropsOnFire"
         ),
-        format!("больше {most} сообщений: остальные опущены, ищите событие без dropsOnFire"),
-    )
-}
-
-pub(super) fn too_long_messages() -> Words {
-    let most = limits::CONSTRAINT_ENTRIES_BYTES >> 20;
-    Words::new(
         format!(
-            "messages of more than {most} MiB: what is too long is left out, look for an event without dropsOnFire"
+            "больше {most} сообщений или {mib} МиБ: остальные опущены, ищите событие без dropsOnFire"
         ),
-        format!("сообщения длиннее {most} МиБ: лишнее опущено, ищите событие без dropsOnFire"),
     )
 }
 

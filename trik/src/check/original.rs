@@ -5,10 +5,10 @@
 //! original is 0 for failed tasks too; here it is true. What a run is, is in `run`.
 
 use super::args::CheckArgs;
+use super::confine;
 use super::jobs::Job;
 use super::pool;
 use super::run::text;
-use super::sandbox_args;
 use crate::diagrams::generate::{self, GenArgs};
 use crate::diagrams::save::must_open;
 use crate::error::Error;
@@ -218,7 +218,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
     };
     let is_input_there = named(&args.input).is_none_or(|path| path.exists());
     let check = wanted(args, is_script);
-    let check = match sandbox_args::settle(std::slice::from_ref(&job), &check) {
+    let check = match confine::settle(std::slice::from_ref(&job), &check) {
         Ok(check) => check,
         Err(refusal) => {
             say(&refusal.lines);

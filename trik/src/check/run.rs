@@ -314,7 +314,8 @@ impl Solution {
         };
         let script = match script {
             None if args.is_embedded => {
-                Some(script::embedded(&project, path).map_err(Refused::broken)?)
+                let embedded = script::embedded(&project, path);
+                Some(embedded.map_err(|why| Refused::broken(line(why)))?)
             }
             script => script,
         };

@@ -2,8 +2,6 @@
 //!
 //! Owns which language a file is in. Knows no engine from inside.
 
-use super::jobs::shown;
-use super::run::Lines;
 use crate::diagrams::save;
 use crate::error::Error;
 use crate::sandbox::Sandbox;
@@ -91,16 +89,16 @@ pub(super) fn embeds_python(path: &Path) -> bool {
 }
 
 /// The program that a save holds beside its diagram.
-pub(super) fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Lines> {
+///
+/// # Errors
+/// It holds none, or one in another language.
+pub(super) fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Error> {
     let key = |name| project.meta.get(name).filter(|value| !value.is_empty());
     let (Some(code), ending) = (key("activeCode"), key("activeCodeLanguageExtension")) else {
-        return Err(vec![format!(
-            "{}: there is no program with text in it",
-            shown(path)
-        )]);
+        return Err(Error::file(path, "there is no program with text in it"));
     };
     let ending = ending.map_or("js", |ending| ending);
     let language = Language::of_ending(ending)
-        .ok_or_else(|| vec![format!("{}: there is no language '{ending}'", shown(path))])?;
+        .ok_or_else(|| Error::file(path, format!("there is no language '{ending}'")))?;
     Ok((language, code.clone()))
 }

@@ -452,11 +452,7 @@ fn long_messages_in_each_tick_take_bounded_memory_and_the_verdict_is_told_all_th
             (limits::CONSTRAINT_ENTRIES_BYTES >> 20) + 1
         );
         let last = run.entries.last().unwrap();
-        assert!(
-            last.text.starts_with("messages of more than 8 MiB"),
-            "{}",
-            last.text
-        );
+        assert!(last.text.contains("or 8 MiB of them"), "{}", last.text);
         assert_eq!(last.level, Level::Critical);
     }
 }

@@ -415,7 +415,7 @@ fn rules_that_say_a_megabyte_in_each_tick_take_bounded_memory() {
     );
     assert_eq!(output.code(), 0, "{:.2000}{}", output.stdout, output.stderr);
     assert!(
-        output.stdout.contains("messages of more than 8 MiB"),
+        output.stdout.contains("or 8 MiB of them"),
         "{:.2000}",
         output.stdout
     );
