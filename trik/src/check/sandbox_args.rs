@@ -10,8 +10,8 @@ use std::path::PathBuf;
 /// Options for the sandbox.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SandboxArgs {
-    /// Run no solution in Python unless this computer gives every layer of their sandbox; without it what is missing is
-    /// told, and they run.
+    /// Run no solution in Python unless this computer gives every layer of their sandbox. Without this option they run, and
+    /// what is missing is told once.
     #[arg(long, conflicts_with = "log")]
     pub require_sandbox: bool,
     /// Do as if the kernel did not have this layer.
