@@ -13,6 +13,9 @@ use nix::sys::prctl::{set_no_new_privs, set_pdeathsig};
 use nix::sys::resource::{Resource, getrlimit, rlim_t, setrlimit};
 use nix::sys::signal::Signal;
 use nix::unistd::{getegid, geteuid, setsid};
+use rustix::thread::{
+    CapabilitySet, CapabilitySets, remove_capability_from_bounding_set, set_capabilities,
+};
 use std::fs;
 use std::io::Write;
 use std::os::fd::OwnedFd;
@@ -44,9 +47,10 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     }
     take_limits(&order).map_err(failed)?;
     if order.is_dropping {
-        outer::drop_rights().map_err(failed)?;
+        outer::become_user(order.uid, order.gid).map_err(failed)?;
     }
     shed(&own, &mut order);
+    drop_rights();
     set_no_new_privs().map_err(failed)?;
     // After the last change of the user, which clears it.
     set_pdeathsig(Signal::SIGKILL).map_err(failed)?;
@@ -138,6 +142,25 @@ fn take_limits(order: &Order) -> nix::Result<()> {
         setrlimit(resource, most, most)?;
     }
     Ok(())
+}
+
+/// Gives up every right of root, also for programs that this process becomes: where it could not become another user, for
+/// example in a container that has no other, that is what is left of root.
+fn drop_rights() {
+    for bit in 0..u64::BITS {
+        // Who has no rights may drop none, and no kernel knows all of them.
+        let _ = remove_capability_from_bounding_set(CapabilitySet::from_bits_retain(1 << bit));
+    }
+    let none = CapabilitySet::empty();
+    // Fewer rights than before are never refused.
+    let _ = set_capabilities(
+        None,
+        CapabilitySets {
+            effective: none,
+            permitted: none,
+            inheritable: none,
+        },
+    );
 }
 
 /// Gives up what this process may do in its namespaces: in one of users below theirs a program that is not root has no

@@ -42,7 +42,7 @@ pub(super) struct Order {
     pub is_required: bool,
     /// Only says what is missing.
     pub is_probe: bool,
-    /// The inner step is root of the computer, and becomes nobody.
+    /// The inner step is root of the computer, and becomes the user that the program sees itself as.
     pub is_dropping: bool,
     /// The inner step is root of a namespace of users.
     pub is_mapped: bool,

@@ -20,13 +20,14 @@ use nix::unistd::{
 };
 use std::fs::{self, File};
 use std::os::fd::OwnedFd;
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::Command;
 use trikd::program::kill;
 
 /// The user and the group that own nothing.
-pub(super) const NOBODY: u32 = 65534;
+const NOBODY: u32 = 65534;
 /// Since which kernel processes are counted for each namespace of users.
 const COUNTS_APART: (u32, u32) = (5, 14);
 const NAMESPACES: [(CloneFlags, Layer); 4] = [
@@ -86,14 +87,19 @@ fn separate(order: &mut Order) {
     let mut is_other = false;
     if uid.is_root() {
         (order.uid, order.gid) = (NOBODY, NOBODY);
-        if order.wants(Layer::User) && can_be_nobody(order) {
+        let user = match order.wants(Layer::User) {
+            true => reader(order),
+            false => None,
+        };
+        if let Some((uid, gid)) = user {
+            (order.uid, order.gid) = (uid, gid);
             order.is_dropping = unshare(all).is_ok();
             if order.is_dropping {
-                order.threads = threads(Uid::from_raw(NOBODY));
+                order.threads = threads(Uid::from_raw(uid));
                 return;
             }
-            // The root of a container makes no namespaces, but nobody may perhaps have one of users.
-            is_other = drop_rights().is_ok();
+            // The root of a container makes no namespaces, but another user may perhaps have one of users.
+            is_other = become_user(uid, gid).is_ok();
         }
         if !is_other {
             order.miss(Layer::User);
@@ -125,32 +131,44 @@ fn separate(order: &mut Order) {
     }
 }
 
-/// Whether nobody could read the program and Python.
-fn can_be_nobody(order: &Order) -> bool {
-    let nobody = || {
+/// A user that is not root and reads the programs and Python: nobody, or else whose folder it is.
+fn reader(order: &Order) -> Option<(u32, u32)> {
+    let mut found = None;
+    for folder in &order.folders {
+        let owner = fs::metadata(folder).ok().map(|it| (it.uid(), it.gid()));
+        let owner = owner.filter(|(uid, gid)| *uid != 0 && *gid != 0);
+        let mut users = [Some((NOBODY, NOBODY)), owner].into_iter().flatten();
+        let user = users.find(|user| can_be(*user, folder, order))?;
+        found.get_or_insert(user);
+    }
+    found
+}
+
+/// Whether a user reads a folder, and Python.
+fn can_be((uid, gid): (u32, u32), folder: &Path, order: &Order) -> bool {
+    let become_it = || {
         setgroups(&[])?;
-        setegid(Gid::from_raw(NOBODY))?;
-        seteuid(Uid::from_raw(NOBODY))
+        setegid(Gid::from_raw(gid))?;
+        seteuid(Uid::from_raw(uid))
     };
     let can_read = |path: &Path| match path.is_dir() {
         true => fs::read_dir(path).is_ok(),
         false => File::open(path).is_ok(),
     };
-    let mut paths = order.folders.iter().map(|folder| &**folder);
     let interpreter = order.program.first().map(Path::new);
-    let can = nobody().is_ok()
-        && paths.all(can_read)
+    let can = become_it().is_ok()
+        && can_read(folder)
         && interpreter.is_some_and(can_read)
         // The inner step is this program.
         && can_read(Path::new(SELF));
     seteuid(Uid::from_raw(0)).is_ok() && setegid(Gid::from_raw(0)).is_ok() && can
 }
 
-/// Becomes nobody, for good.
-pub(super) fn drop_rights() -> nix::Result<()> {
+/// Becomes another user, for good.
+pub(super) fn become_user(uid: u32, gid: u32) -> nix::Result<()> {
     setgroups(&[])?;
-    setgid(Gid::from_raw(NOBODY))?;
-    setuid(Uid::from_raw(NOBODY))?;
+    setgid(Gid::from_raw(gid))?;
+    setuid(Uid::from_raw(uid))?;
     // Its own files of /proc were root's since then.
     set_dumpable(true)
 }

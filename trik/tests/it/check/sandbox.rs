@@ -4,7 +4,7 @@ use super::{drive, world};
 use crate::rig::TRIK;
 use harness::{Board, Output, tools};
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{PermissionsExt, chown};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -385,6 +385,33 @@ tries('owner', lambda: os.chown('class/a.py', 0, 0))
         "{}",
         refused.stderr
     );
+    // With no namespace of users either, as in some containers, it has no right of root.
+    let rights = "for line in open('/proc/self/status'):
+    if line.startswith('Cap'): print(int(line.split()[1], 16))
+";
+    let output = check(&board, rights, &["--without-layer=user"]);
+    let printed = output.stdout.matches("print: 0\n").count();
+    assert_eq!(printed, 5, "{}{}", output.stdout, output.stderr);
+}
+
+#[test]
+fn the_solution_of_a_pupil_who_shows_it_to_nobody_runs_as_the_pupil() {
+    if !nix::unistd::geteuid().is_root() {
+        return;
+    }
+    let board = board();
+    if !is_whole(&board) {
+        return;
+    }
+    let program =
+        "import os, helper\nprint(helper.help(), os.getuid(), os.getgid(), os.getgroups())";
+    board.file("class/helper.py", "def help(): return 'helped'");
+    let class = board.path("class");
+    fs::set_permissions(&class, fs::Permissions::from_mode(0o700)).expect("its mode");
+    for path in [class.clone(), class.join("helper.py")] {
+        chown(&path, Some(1234), Some(2345)).expect("its owner");
+    }
+    assert_eq!(printed(&board, program), ["helped 1234 2345 []"]);
 }
 
 #[test]
