@@ -235,7 +235,7 @@ sum(range(10 ** 12))
     assert_eq!(output.code(), 2, "{}{}", output.stdout, output.stderr);
     assert!(output.stdout.contains("does not wait"), "{}", output.stdout);
     assert_eq!(standing(&board), 0);
-    assert!(took < Duration::from_millis(3_500), "{took:?}");
+    assert!(took < Duration::from_secs(4), "{took:?}");
     // There were never more than a few at once.
     let count = "import os
 children = 0
