@@ -11,6 +11,7 @@ use crate::watch::{Wants, Watch, Wish, now_ns};
 use journal::standard::{Level, Log};
 use journal::write::Story;
 use std::collections::HashSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -99,7 +100,12 @@ impl Desk {
         let thread = std::thread::Builder::new()
             .name("recorder".to_owned())
             .spawn(move || {
-                work.run(&come);
+                // After a panic it looks at everything anew, for the listeners that come then.
+                while catch_unwind(AssertUnwindSafe(|| work.run(&come))).is_err() {
+                    work.leave();
+                    work.batch.clear();
+                    work.listeners.clear();
+                }
                 if let Some(kept) = work.kept.take() {
                     kept.close();
                 }
@@ -180,6 +186,11 @@ impl Work {
         loop {
             let is_idle = self.kept.is_none() && self.listeners.is_empty();
             self.is_heard.store(!is_idle, Ordering::Relaxed);
+            if is_idle {
+                // Rings that nobody reads are not filled, and nothing stays open.
+                self.leave();
+                self.batch.clear();
+            }
             let order = match is_idle {
                 true => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 false => orders.recv_timeout(turn),
@@ -282,9 +293,6 @@ impl Work {
 
     fn look(&mut self) {
         if self.kept.is_none() && self.listeners.is_empty() {
-            // Rings that nobody reads are not filled.
-            self.leave();
-            self.batch.clear();
             return;
         }
         self.ensure();

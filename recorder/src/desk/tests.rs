@@ -130,6 +130,62 @@ fn a_tree_that_comes_back_has_nodes_with_other_numbers() {
     assert_ne!(first.number, second.number, "a file would take it for a");
 }
 
+/// Waits until something holds.
+fn eventually(what: &str, holds: impl Fn() -> bool) {
+    let end = Instant::now() + Duration::from_secs(30);
+    while !holds() {
+        assert!(Instant::now() < end, "{what}");
+        std::thread::yield_now();
+    }
+}
+
+#[test]
+fn nothing_stays_open_when_the_last_listener_has_gone() {
+    let mut tree = Tree::new();
+    tree.mount("a");
+    tree.file("log", "");
+    let desk = desk(&tree);
+    let open = || {
+        let all = fs::read_dir("/proc/self/fd").unwrap().flatten();
+        let names = all.filter_map(|one| fs::read_link(one.path()).ok());
+        names
+            .filter(|name| name.starts_with(tree.root.path()))
+            .count()
+    };
+    let (tell, heard) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    eventually("it looks", || open() > 0);
+    drop(heard);
+    desk.line(Story::Output, "a.js", Level::Info, "it hears nothing more");
+    eventually("nobody listens", || !desk.is_heard());
+    eventually("all is closed", || open() == 0);
+}
+
+/// One that fails.
+struct Broken;
+
+impl Listener for Broken {
+    fn wants(&self) -> Wants {
+        Box::new(|_| Some(Wish::ByTheClock))
+    }
+
+    fn put(&mut self, _: &[Entry], _now_ns: u64) -> bool {
+        panic!("a test wants that")
+    }
+}
+
+#[test]
+fn a_listener_that_fails_does_not_keep_the_next_one_from_hearing() {
+    let mut tree = Tree::new();
+    tree.mount("a");
+    let desk = desk(&tree);
+    desk.listen(Box::new(Broken));
+    let (tell, heard) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    tree.publish(5);
+    assert_eq!(sample(&heard).1, 5);
+}
+
 #[test]
 fn lines_reach_who_listens_and_nobody_is_waited_for_at_the_end() {
     let tree = Tree::new();
