@@ -23,6 +23,8 @@ pub enum Failure {
     Serving(io::Error),
     /// The serving process was killed.
     Killed(ExitStatus),
+    /// It was stopped and did not go on, so the keeper has killed it.
+    Stopped,
     /// The keeper died before the serving process had begun.
     KeeperGone,
     /// The view would hide its own tree.
@@ -46,6 +48,7 @@ impl fmt::Display for Failure {
             Self::Signals(error) => write!(f, "signals: {error}"),
             Self::Serving(error) => write!(f, "serving: {error}"),
             Self::Killed(status) => write!(f, "the serving process was ended by {status}"),
+            Self::Stopped => f.write_str("the serving process was stopped and did not go on"),
             Self::KeeperGone => f.write_str("the process that keeps the mount is gone"),
             Self::OverItsTree(path) => write!(
                 f,

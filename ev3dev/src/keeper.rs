@@ -2,7 +2,7 @@
 //!
 //! The keeper mounts, starts the serving process and waits for a signal, an unmount or its end; then it unmounts, so that a
 //! kill of the serving process leaves no dead mount. If the keeper is killed, the kernel tells the serving process, which
-//! unmounts by itself. The serving process ends with its files of the tree open: the tree then brings to rest what
+//! unmounts by itself. A serving process that somebody stops (SIGSTOP) and does not soon continue is killed. The serving process ends with its files of the tree open: the tree then brings to rest what
 //! it drove. So nothing has to be done for the motors here, whatever ends the view.
 
 use crate::cli::SERVE;
@@ -17,6 +17,7 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::prctl::{set_name, set_pdeathsig};
 use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::{Pid, getppid};
 use std::ffi::OsString;
 use std::fs::File;
@@ -68,8 +69,11 @@ pub struct Handover {
 pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), Failure> {
     // Started through /proc/self/exe it would be listed as `exe`.
     let _ = set_name(c"trikfs-ev3dev");
-    let mask: SigSet = SIGNALS.into_iter().collect();
+    let mut mask: SigSet = SIGNALS.into_iter().collect();
+    // It comes also when the serving process is stopped.
+    mask.add(Signal::SIGCHLD);
     mask.thread_block().map_err(Failure::Signals)?;
+    unstoppable().map_err(Failure::Signals)?;
     let signals = SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
         .map_err(Failure::Signals)?;
     let path = &plan.mountpoint;
@@ -96,6 +100,11 @@ pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), Failure> {
     drop(device);
     unmount(&mounted);
     end.map_err(Failure::Serving)?
+}
+
+/// A terminal stops whatever runs in it (Ctrl-Z), and motors would go on: not this.
+fn unstoppable() -> nix::Result<()> {
+    SigSet::from(Signal::SIGTSTP).thread_block()
 }
 
 /// A directory that was not there before. Dropping it removes it, if it is empty.
@@ -147,6 +156,8 @@ fn start(plan: &Plan, device: &OwnedFd, mounted: &Mounted) -> io::Result<Server>
         child,
         said,
         heard: Vec::new(),
+        stopped: None,
+        was_killed: false,
     })
 }
 
@@ -156,9 +167,35 @@ struct Server {
     /// Ends with the process.
     said: PipeReader,
     heard: Vec<u8>,
+    /// When it has to go on.
+    stopped: Option<Instant>,
+    /// It did not.
+    was_killed: bool,
 }
 
 impl Server {
+    /// Notices whether it stands still; one that did for too long is killed, and what it drove comes to rest.
+    fn watch_standstill(&mut self) {
+        let Ok(pid) = i32::try_from(self.child.id()) else {
+            return;
+        };
+        // Looks only: the stop stays to be seen, and an end is left to `wait`.
+        let flags = WaitPidFlag::WSTOPPED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
+        let seen = waitid(Id::Pid(Pid::from_raw(pid)), flags);
+        if !matches!(seen, Ok(WaitStatus::Stopped(..))) {
+            self.stopped = None;
+            return;
+        }
+        let patience = Duration::from_millis(limits::STOPPED_MS);
+        let until = *self
+            .stopped
+            .get_or_insert_with(|| Instant::now() + patience);
+        if Instant::now() >= until && !self.was_killed {
+            self.was_killed = true;
+            self.signal(Signal::SIGKILL);
+        }
+    }
+
     /// Waits for the end and brings it about when it is asked for.
     fn until_end(
         &mut self,
@@ -175,7 +212,8 @@ impl Server {
                 PollFd::new(mounts.as_fd(), PollFlags::POLLPRI),
                 PollFd::new(self.said.as_fd(), PollFlags::POLLIN),
             ];
-            let patience = stopping.map_or(PollTimeout::NONE, |at| {
+            let next = stopping.into_iter().chain(self.stopped).min();
+            let patience = next.map_or(PollTimeout::NONE, |at| {
                 let left = at.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
                 left.try_into().unwrap_or(PollTimeout::MAX)
             });
@@ -186,10 +224,11 @@ impl Server {
             let [signal, changed, word] = watched.map(|fd| fd.any().unwrap_or(true));
             let mut stop = changed && !mounted.is_there();
             if signal {
-                while signals.read_signal()?.is_some() {
-                    stop = true;
+                while let Some(info) = signals.read_signal()? {
+                    stop |= i32::try_from(info.ssi_signo) != Ok(Signal::SIGCHLD as i32);
                 }
             }
+            self.watch_standstill();
             if stop && stopping.is_none() {
                 self.signal(Signal::SIGTERM);
                 stopping = Some(Instant::now() + Duration::from_millis(GRACE_MS));
@@ -198,7 +237,11 @@ impl Server {
                 self.signal(Signal::SIGKILL);
             }
             if word && self.hear(ready)? {
-                return Ok(judge(self.child.wait()?, stopping.is_some(), mounted));
+                let (status, asked) = (self.child.wait()?, stopping.is_some());
+                if self.was_killed && !asked {
+                    return Ok(Err(Failure::Stopped));
+                }
+                return Ok(judge(status, asked, mounted));
             }
         }
     }
@@ -273,6 +316,7 @@ pub fn serve(
     }
     let mask: SigSet = SIGNALS.into_iter().collect();
     mask.thread_block().map_err(own)?;
+    unstoppable().map_err(own)?;
     let signals = SignalFd::with_flags(&mask, SfdFlags::SFD_CLOEXEC).map_err(own)?;
     thread::Builder::new()
         .name("signals".to_owned())

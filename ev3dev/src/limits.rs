@@ -26,5 +26,7 @@ pub const RAMP_MS_MAX: i32 = 60_000;
 pub const DC_RAMP_MS_MAX: i32 = 10_000;
 /// Longest line of the serving process.
 pub const LINE_BYTES_MAX: usize = 64;
+/// How long the serving process may be stopped (SIGSTOP) before it is ended: nobody holds the motors that it drives.
+pub const STOPPED_MS: u64 = 500;
 /// Time for the serving process to end after it was asked to, before it is forced.
 pub const GRACE_MS: u64 = 2_000;

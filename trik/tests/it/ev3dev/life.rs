@@ -10,6 +10,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// The processes of the view of a robot: the one that keeps the mount, and the one that serves it.
 fn view_processes(robot: &Robot) -> (u32, u32) {
@@ -57,6 +58,30 @@ fn after_a_kill_of_either_process_motors_rest_and_the_view_comes_back() {
             .complaints()
             .contains("the view of ev3dev has ended; started again")
     );
+}
+
+#[test]
+fn a_serving_process_that_is_stopped_lets_its_motors_rest_and_the_view_comes_back() {
+    let Some((robot, view)) = seen() else { return };
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    eventually("power", || robot.duty(3).unwrap() != 0);
+    let (keeper, server) = view_processes(&robot);
+    let begin = Instant::now();
+    processes::signal(server, Signal::SIGSTOP);
+    eventually("rest", || robot.duty(3).unwrap() == 0);
+    let rested = begin.elapsed();
+    println!("rest {rested:?} after the serving process was stopped");
+    // Within a second, with room for the other tests of this machine.
+    assert!(rested < Duration::from_secs(5), "{rested:?}");
+    eventually("both processes gone", || {
+        !processes::is_alive(keeper) && !processes::is_alive(server)
+    });
+    eventually("the view again", || {
+        view.read(&format!("{LEFT}/state")).is_ok()
+    });
+    let complaints = robot.complaints();
+    let told = "trikfs-ev3dev: the serving process was stopped and did not go on";
+    assert!(complaints.contains(told), "{complaints}");
 }
 
 #[test]
