@@ -1,15 +1,15 @@
 //! Where connections come in: never too many, from one computer neither, and none that only sits there.
 //!
-//! Owns their number and the time of each. What is said over them is not known here.
+//! Owns the time of each; `seats` has the choice. What is said over them is not known here.
 
 use crate::limits;
+use crate::seats::{Room, Seat, Seats, Whom};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
-use std::collections::HashMap;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
@@ -26,50 +26,15 @@ impl Connected<IncomingStream<'_, Door>> for Peer {
     }
 }
 
-/// How many connections each computer has.
-#[derive(Debug, Default)]
-struct Seats(Mutex<HashMap<IpAddr, usize>>);
-
-impl Seats {
-    fn taken(&self) -> MutexGuard<'_, HashMap<IpAddr, usize>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// A place for a connection from there; None if there is none.
-    fn take(self: &Arc<Self>, ip: IpAddr) -> Option<Seat> {
-        let mut taken = self.taken();
-        let all: usize = taken.values().sum();
-        let own = taken.entry(ip).or_default();
-        if all >= limits::CONNECTIONS_MAX || *own >= limits::CONNECTIONS_OF_ONE_MAX {
-            return None;
-        }
-        *own += 1;
-        drop(taken);
-        Some(Seat {
-            seats: Arc::clone(self),
-            ip,
-        })
-    }
-}
-
-/// The place of one connection.
-#[derive(Debug)]
-struct Seat {
-    seats: Arc<Seats>,
-    ip: IpAddr,
-}
-
-impl Drop for Seat {
-    fn drop(&mut self) {
-        let mut taken = self.seats.taken();
-        if let Some(own) = taken.get_mut(&self.ip) {
-            *own -= 1;
-            if *own == 0 {
-                taken.remove(&self.ip);
-            }
-        }
-    }
-}
+/// How many connections there may be.
+const ROOM: Room = Room {
+    all: limits::CONNECTIONS_MAX,
+    one: limits::CONNECTIONS_OF_ONE_MAX,
+    kept: limits::CONNECTIONS_KEPT,
+    stuck_time: limits::STUCK_TIME,
+    mute_time: limits::MUTE_TIME,
+    spares_idle: true,
+};
 
 /// Accepts connections.
 pub struct Door {
@@ -82,7 +47,7 @@ impl Door {
     pub fn new(listener: TcpListener) -> Self {
         Self {
             listener,
-            seats: Arc::default(),
+            seats: Seats::new(ROOM),
         }
     }
 }
@@ -96,7 +61,12 @@ impl Listener for Door {
             match self.listener.accept().await {
                 // One that has no place is closed at once.
                 Ok((stream, address)) => {
-                    if let Some(seat) = self.seats.take(address.ip().to_canonical()) {
+                    let ip = address.ip().to_canonical();
+                    let whom = match ip.is_loopback() {
+                        true => Whom::Own,
+                        false => Whom::Anybody,
+                    };
+                    if let Ok(seat) = self.seats.take(ip, whom) {
                         // Without it small messages come late, and that is all.
                         let _ = stream.set_nodelay(true);
                         return (Guest::new(stream, seat), address);
@@ -118,7 +88,7 @@ pub struct Guest {
     stream: TcpStream,
     /// When nothing could be sent to it for too long: it asks nothing, or reads nothing, or asks for ever.
     idle: Pin<Box<Sleep>>,
-    _seat: Seat,
+    seat: Seat,
 }
 
 impl Guest {
@@ -126,14 +96,15 @@ impl Guest {
         Self {
             stream,
             idle: Box::pin(sleep(limits::IDLE_TIME)),
-            _seat: seat,
+            seat,
         }
     }
-}
 
-impl Guest {
-    /// Whether the time is up, as an error.
+    /// Whether the time is up, or another one has the place, as an error.
     fn patience<T>(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<T>> {
+        if self.seat.poll_lost(cx).is_ready() {
+            return Poll::Ready(Err(io::ErrorKind::ConnectionReset.into()));
+        }
         let is_over = self.idle.as_mut().poll(cx);
         is_over.map(|()| Err(io::ErrorKind::TimedOut.into()))
     }
@@ -145,8 +116,14 @@ impl AsyncRead for Guest {
         cx: &mut Context<'_>,
         buf: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
+        let before = buf.filled().len();
         match Pin::new(&mut self.stream).poll_read(cx, buf) {
-            Poll::Ready(done) => Poll::Ready(done),
+            Poll::Ready(done) => {
+                // What is whole is answered, which counts when it happens.
+                let bytes = buf.filled().len() - before;
+                self.seat.place().hears(bytes, false, true);
+                Poll::Ready(done)
+            }
             Poll::Pending => self.patience(cx),
         }
     }
@@ -161,6 +138,7 @@ impl AsyncWrite for Guest {
         match Pin::new(&mut self.stream).poll_write(cx, buf) {
             Poll::Ready(done) => {
                 self.idle.as_mut().reset(Instant::now() + limits::IDLE_TIME);
+                self.seat.place().is_good();
                 Poll::Ready(done)
             }
             Poll::Pending => self.patience(cx),
@@ -173,31 +151,5 @@ impl AsyncWrite for Guest {
 
     fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         Pin::new(&mut self.stream).poll_shutdown(cx)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_computer_never_has_all_places_and_a_place_comes_back() {
-        let seats = Arc::<Seats>::default();
-        let (one, other): (IpAddr, IpAddr) = ([10, 0, 0, 1].into(), [10, 0, 0, 2].into());
-        let mut taken = Vec::new();
-        while let Some(seat) = seats.take(one) {
-            taken.push(seat);
-        }
-        assert_eq!(taken.len(), limits::CONNECTIONS_OF_ONE_MAX);
-        let mut others = Vec::new();
-        while let Some(seat) = seats.take(other) {
-            others.push(seat);
-        }
-        let left = limits::CONNECTIONS_MAX - limits::CONNECTIONS_OF_ONE_MAX;
-        assert_eq!(others.len(), left);
-        taken.pop();
-        assert!(seats.take(other).is_some());
-        drop((taken, others));
-        assert!(seats.taken().is_empty());
     }
 }

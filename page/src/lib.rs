@@ -5,6 +5,7 @@
 //! hardly looked at: the page speaks it as every other client does.
 //!
 //! - `server`, `door`, `route`: the thread, connections, and which address gives what
+//! - `seats`: who gets a place among all connections, and who loses one
 //! - `guard`: Host, Origin and the cookie
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
@@ -31,6 +32,7 @@ mod plain;
 pub mod playback;
 mod relay;
 mod route;
+pub mod seats;
 mod server;
 mod shared;
 mod store;

@@ -10,6 +10,17 @@ pub const BROWSERS_MAX: usize = 40;
 pub const CONNECTIONS_MAX: usize = 128;
 /// Those of them that one computer may have.
 pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
+/// Places beside these for browsers of this machine.
+pub const CONNECTIONS_KEPT: usize = 8;
+/// A connection that is not answered keeps its place so long while others wait for it: its request is not whole. A browser that
+/// looks is told something in every [`PING_TIME`].
+pub const STUCK_TIME: Duration = Duration::from_secs(3);
+/// One that has asked for nothing keeps it so long: browsers connect before they know what to ask for.
+pub const MUTE_TIME: Duration = Duration::from_secs(5);
+/// A computer that has so many places more than another one gives some up for that at once, if nothing whole has come on them.
+pub const FAIR_LEAD: usize = 8;
+/// Bytes of one message that count as progress: so many in a second are an upload over a bad network, and fewer are none.
+pub const PROGRESS_BYTES: usize = 1 << 10;
 /// A connection to which nothing could be sent for so long is closed; a browser that looks is told something every second.
 pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
@@ -22,6 +33,10 @@ pub const REQUEST_BYTES_MAX: usize = 64 << 10;
 pub const UPLOADS_BYTES_MAX: usize = 2 * MESSAGE_BYTES_MAX;
 /// Bytes that wait for one browser, answers to its pings too: a little more than one message.
 pub const UNSENT_BYTES_MAX: usize = MESSAGE_BYTES_MAX + (1 << 20);
+/// Bytes that are read from a browser at once; each browser has so many for as long as it looks.
+pub const READ_BYTES: usize = 16 << 10;
+/// How long a thread for files waits for more work before it ends.
+pub const FILE_THREAD_IDLE_TIME: Duration = Duration::from_secs(2);
 /// Bytes of an order in words: a value for an actuator.
 pub const WORDS_BYTES_MAX: usize = 64 << 10;
 /// Bytes of an order to the world: a world that a person drops on the page comes in it.

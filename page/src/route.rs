@@ -150,6 +150,7 @@ async fn socket(
         .max_message_size(most)
         .max_frame_size(most)
         .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
+        .read_buffer_size(limits::READ_BYTES)
         .on_upgrade(move |socket| async move {
             browser::serve(shared, socket, who).await;
             drop(seat);

@@ -39,6 +39,7 @@ impl Page {
             .enable_io()
             .enable_time()
             .max_blocking_threads(limits::FILE_THREADS)
+            .thread_keep_alive(limits::FILE_THREAD_IDLE_TIME)
             .build()
             .map_err(Error::Thread)?;
         let robot = watch::Sender::new(None);
