@@ -6,9 +6,10 @@ pub mod debugging;
 
 use crate::outbox::{Latest, Outbox};
 use frame::encode;
+use page::seats::Whom;
 use std::cell::{Cell, RefCell};
 use std::fmt::Write;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::rc::{Rc, Weak};
 use std::time::Instant;
 
@@ -111,6 +112,15 @@ impl Clients {
     /// Remembers who commands.
     pub fn takes_control(&self, peer: SocketAddr) {
         self.in_control.set(Some(peer));
+    }
+
+    /// For whom a place at that address is.
+    pub fn whom(&self, ip: IpAddr) -> Whom {
+        match self.in_control.get() {
+            Some(peer) if peer.ip() == ip => Whom::InControl,
+            _ if ip.is_loopback() => Whom::Own,
+            _ => Whom::Anybody,
+        }
     }
 
     fn living(&self) -> Vec<Rc<Client>> {

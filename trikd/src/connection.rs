@@ -6,6 +6,7 @@ use crate::limits;
 use crate::outbox::Outbox;
 use crate::protocol::news::SLOW_READER;
 use frame::{Decoder, encode};
+use page::seats::{Place, Seat};
 use std::cell::Cell;
 use std::io;
 use std::rc::Rc;
@@ -54,9 +55,11 @@ impl Drop for Share<'_> {
     }
 }
 
-/// Serves a connection to its end. `frame_bytes` is the greatest frame. Returns why it ended, in words.
+/// Serves a connection, of which these bytes have come already, to its end. `frame_bytes` is the greatest frame. Returns why it ended, in words.
 pub async fn serve(
     mut stream: TcpStream,
+    begun: &[u8],
+    seat: &mut Seat,
     frame_bytes: usize,
     held: &Held,
     outbox: &Rc<Outbox>,
@@ -65,10 +68,13 @@ pub async fn serve(
     let reason = {
         let (reader, mut writer) = stream.split();
         let handler = &mut *handler;
+        let place = seat.place();
         tokio::select! {
             // First what comes: then its answers go in the same turn.
             biased;
-            reason = read(reader, frame_bytes, held, handler) => reason,
+            reason = read(reader, begun, &place, frame_bytes, held, handler) => reason,
+            // Others may be about to come in thousands: nothing is waited for.
+            () = seat.lost() => return "another one needs its place".to_owned(),
             error = write(&mut writer, outbox) => match error {
                 Ok(()) => Reason::Plain("closed by this side".to_owned()),
                 Err(error) => Reason::Plain(format!("cannot send: {error}")),
@@ -105,6 +111,8 @@ fn note(count: u32) -> Vec<u8> {
 
 async fn read(
     mut reader: ReadHalf<'_>,
+    mut begun: &[u8],
+    place: &Place,
     frame_bytes: usize,
     held: &Held,
     handler: &mut impl Handler,
@@ -115,12 +123,13 @@ async fn read(
     let mut half_since: Option<Instant> = None;
     let silence = Duration::from_millis(limits::SILENCE_MS);
     loop {
-        let size = match timeout(silence, reader.read(&mut buffer)).await {
+        let size = match timeout(silence, begun.chain(&mut reader).read(&mut buffer)).await {
             Err(_) => return Reason::Plain(format!("silent for {} ms", limits::SILENCE_MS)),
             Ok(Err(error)) => return Reason::Plain(error.to_string()),
             Ok(Ok(0)) => return Reason::Plain("closed by the client".to_owned()),
             Ok(Ok(size)) => size,
         };
+        begun = &begun[begun.len().min(size)..];
         decoder.feed(&buffer[..size]);
         let mut moved = false;
         loop {
@@ -133,6 +142,7 @@ async fn read(
                 Err(violation) => return Reason::Complaint(violation.to_string()),
             }
         }
+        place.hears(size, moved, decoder.buffered() > 0);
         if !share.set(decoder.buffered()) {
             return Reason::Complaint(
                 "too many bytes of unfinished messages: try again later".to_owned(),

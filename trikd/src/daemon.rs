@@ -10,6 +10,7 @@ use crate::connection::Held;
 use crate::error::{BadUser, Error};
 use crate::feedback::Feedback;
 use crate::pace::Pace;
+use crate::panics::{self, Panics};
 use crate::pictures::Pictures;
 use crate::priority::{self, Rank};
 use crate::program::boot::Autorun;
@@ -28,12 +29,13 @@ use crate::server::recordings::Recordings;
 use crate::server::telemetry::Telemetry;
 use crate::server::variables::Variables;
 use crate::server::video::Video;
-use crate::server::{self, Admission, Port, Seats};
+use crate::server::{self, Admission, Port};
 use crate::settings::{BoxKey, Service, Settings, StopKey};
 use crate::status::Status;
-use crate::{heartbeat, keys, status};
+use crate::{heartbeat, keys, standstill, status};
 use crate::{limits, log};
-use nix::unistd::{User, chown, geteuid};
+use nix::unistd::{User, chown, geteuid, getppid};
+use page::seats::Seats;
 use recorder::kept::SaveReason;
 use std::fmt::Write as _;
 use std::io::Write;
@@ -41,7 +43,8 @@ use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+use tokio::net::UnixListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::{LocalSet, spawn_local};
@@ -150,7 +153,8 @@ struct Parts {
     owner: Option<Owner>,
     access: Arc<Access>,
     clients: Rc<Clients>,
-    seats: Rc<Seats>,
+    seats: Arc<Seats>,
+    panics: Arc<Panics>,
     held: Rc<Held>,
     sampler: Rc<Sampler>,
     rest: Rc<Rest>,
@@ -163,14 +167,14 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(settings: Settings, owner: Option<Owner>) -> Result<Self, Error> {
+    fn new(settings: Settings, owner: Option<Owner>, panics: Arc<Panics>) -> Result<Self, Error> {
         let access = Access::new(
             settings.allow.clone(),
             settings.pair,
             &settings.state.join("paired"),
         );
         let clients = Rc::<Clients>::default();
-        let seats = Rc::new(Seats::new(settings.connections.into()));
+        let seats = server::seats(settings.connections.into());
         let held = Rc::<Held>::default();
         let programs = Rc::<Programs>::default();
         let mailbox = Mailbox::new(
@@ -203,6 +207,7 @@ impl Parts {
             access,
             clients,
             seats,
+            panics,
             held,
             sampler: Rc::new(Sampler::start(&settings.tree).map_err(Error::thread)?),
             rest: Rc::new(Rest::start(&settings.tree).map_err(Error::thread)?),
@@ -241,6 +246,7 @@ impl Parts {
             programs: self.programs.clone(),
             mailbox: self.mailbox.clone(),
             seats: self.seats.clone(),
+            panics: self.panics.clone(),
             clients: self.clients.clone(),
         }
     }
@@ -251,6 +257,16 @@ impl Parts {
             state: self.settings.state.clone(),
             sampler: self.sampler.clone(),
             programs: self.programs.clone(),
+        }
+    }
+
+    /// Says so if programs are root; who has named root knows it.
+    fn warn_of_root(&self) {
+        if self.settings.user.is_none() && geteuid().is_root() {
+            tracing::warn!(
+                target: log::PROGRAMS,
+                "programs run as root: name a user for them with --user"
+            );
         }
     }
 
@@ -270,10 +286,11 @@ impl Parts {
 
     /// Begins to accept on all ports.
     fn open(&self, ports: Ports) {
-        let admission = Rc::new(Admission {
-            access: self.access.clone(),
-            seats: self.seats.clone(),
-        });
+        let admission = Rc::new(Admission::new(
+            self.access.clone(),
+            self.clients.clone(),
+            self.seats.clone(),
+        ));
         let control_port = ports.control.number();
         let recordings = Rc::new(Recordings {
             access: self.access.clone(),
@@ -360,14 +377,24 @@ impl Parts {
         }
     }
 
-    fn keys(&self) -> Keys {
-        Keys {
+    /// Begins to answer who asks for the status, and to look after the guardian.
+    fn look_after(&self, ports: String, listener: UnixListener) {
+        let (status, listener) = (Rc::new(self.status(ports)), Rc::new(listener));
+        let answer = move || status::serve(status.clone(), listener.clone());
+        spawn_local(panics::again("status", answer));
+        let (guardian, programs) = (getppid(), self.programs.clone());
+        let look = move || standstill::look(guardian, programs.clone());
+        spawn_local(panics::again("standstill", look));
+    }
+
+    fn keys(&self) -> Rc<Keys> {
+        Rc::new(Keys {
             stop_key: self.settings.stop_key,
             box_key: self.settings.box_key,
             record: self.record.clone(),
             access: self.access.clone(),
             programs: self.programs.clone(),
-        }
+        })
     }
 }
 
@@ -381,12 +408,14 @@ pub fn run(settings: Settings, restarts: u32) -> Result<(), Error> {
         .enable_all()
         .on_thread_park(move || pace.rest())
         .max_blocking_threads(limits::BLOCKING_THREADS)
+        .thread_keep_alive(Duration::from_millis(limits::BLOCKING_IDLE_MS))
         .build()
         .map_err(|error| Error::EventLoop(error.into()))?;
     runtime.block_on(LocalSet::new().run_until(serve(settings, restarts)))
 }
 
 async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
+    let panics = Panics::watch();
     settings.make_absolute()?;
     let ports = Ports::bind(&settings)?;
     directory(&settings.scripts, "--scripts")?;
@@ -404,21 +433,17 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     let mut terminate = listen(SignalKind::terminate())?;
     let mut interrupt = listen(SignalKind::interrupt())?;
     let mut hang_up = listen(SignalKind::hangup())?;
+    // A terminal stops whatever runs in it (Ctrl-Z), and motors would go on: with this it does not.
+    let _unstoppable = listen(SignalKind::from_raw(libc::SIGTSTP))?;
     let pressed = keys::watch(&settings.tree).map_err(Error::thread)?;
     let mut words = ports.describe();
     let control_port = ports.control.number();
-    let parts = Parts::new(settings, owner)?;
+    let parts = Parts::new(settings, owner, panics)?;
     let page = server::page::start(&parts.settings, &parts.access, control_port)?;
     if let Some(page) = &page {
         let _ = write!(words, ", page {}", page.address().port());
     }
-    // Who has named root knows it.
-    if parts.settings.user.is_none() && geteuid().is_root() {
-        tracing::warn!(
-            target: log::PROGRAMS,
-            "programs run as root: name a user for them with --user"
-        );
-    }
+    parts.warn_of_root();
     let reaper = spawn_local({
         let reaper = parts.reaper.clone();
         async move { reaper.run().await }
@@ -433,7 +458,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
         Ok(()) => parts.warn_of_rights(),
     }
     parts.open(ports);
-    spawn_local(status::serve(parts.status(words.clone()), listener));
+    parts.look_after(words.clone(), listener);
     spawn_local(parts.keys().hear(pressed));
     if !parts.settings.no_autorun {
         spawn_local(boot::autorun(parts.autorun(), restarts));
@@ -469,8 +494,17 @@ struct Keys {
 }
 
 impl Keys {
+    /// Does what keys ask for until there are no more. One that fails does not keep the next from being heard.
+    async fn hear(self: Rc<Self>, mut pressed: mpsc::Receiver<&'static str>) {
+        while let Some(key) = pressed.recv().await {
+            let keys = self.clone();
+            // A panic is told by its hook.
+            let _ = spawn_local(async move { keys.act(key).await }).await;
+        }
+    }
+
     /// The stop key ends the program; Enter pairs who has asked.
-    async fn hear(self, mut pressed: mpsc::Receiver<&'static str>) {
+    async fn act(&self, key: &'static str) {
         let stop = match self.stop_key {
             StopKey::Power => "Power",
             StopKey::Esc => "Esc",
@@ -483,18 +517,16 @@ impl Keys {
             BoxKey::Right => "Right",
             BoxKey::None => "",
         };
-        while let Some(key) = pressed.recv().await {
-            if key == freeze {
-                self.record.freeze(SaveReason::Key);
-            }
-            if key == stop && self.programs.runs() {
-                self.programs.send(Command::Stop("the stop key")).await;
-            } else if key == "Enter" && self.access.pairs() {
-                match self.access.pair_last() {
-                    Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),
-                    Ok(None) => {}
-                    Err(error) => tracing::warn!(target: log::CLIENTS, "pairing: {error}"),
-                }
+        if key == freeze {
+            self.record.freeze(SaveReason::Key);
+        }
+        if key == stop && self.programs.runs() {
+            self.programs.send(Command::Stop("the stop key")).await;
+        } else if key == "Enter" && self.access.pairs() {
+            match self.access.pair_last() {
+                Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),
+                Ok(None) => {}
+                Err(error) => tracing::warn!(target: log::CLIENTS, "pairing: {error}"),
             }
         }
     }

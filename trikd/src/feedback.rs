@@ -5,7 +5,7 @@
 //! cannot be shown is left out.
 
 use crate::tree::{Access, Tree};
-use crate::{limits, log};
+use crate::{limits, log, panics};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -43,7 +43,7 @@ impl Feedback {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("feedback".to_owned())
-            .spawn(move || serve(&root, &shown))?;
+            .spawn(move || panics::keep(|| serve(&root, &shown)))?;
         Ok(Self { show: Some(show) })
     }
 
@@ -63,6 +63,8 @@ fn serve(root: &Path, shown: &Receiver<Moment>) {
                 tracing::debug!(target: log::TREE, "{moment:?} is not shown: {file}: {error}");
             }
         }
+        // Moments are rare, and what is open is held by somebody.
+        tree.close();
     }
 }
 

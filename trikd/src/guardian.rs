@@ -129,6 +129,8 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, Error> {
     kill::adopt_orphans()?;
     let mut signals = SigSet::from_iter(ENDS);
     signals.add(Signal::SIGCHLD);
+    // A terminal stops whatever runs in it (Ctrl-Z), and motors would go on.
+    signals.add(Signal::SIGTSTP);
     signals.thread_block().map_err(fails)?;
     let mut crashes: VecDeque<Instant> = VecDeque::new();
     let mut restarts = 0;
@@ -136,6 +138,10 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, Error> {
     let mut daemon = start(arguments, restarts)?;
     loop {
         let signal = signals.wait().map_err(fails)?;
+        if signal == Signal::SIGTSTP {
+            tracing::warn!(target: log::DAEMON, "what guards motors is not stopped: end it with Ctrl-C");
+            continue;
+        }
         if signal != Signal::SIGCHLD {
             is_over = true;
             end(daemon);

@@ -2,7 +2,7 @@
 //!
 //! Owns one thread and one counter. It counts its own rounds and not the clock, so a machine that slept is no hang.
 
-use crate::{limits, log};
+use crate::{limits, log, panics};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -27,7 +27,7 @@ pub fn start() -> io::Result<()> {
     };
     std::thread::Builder::new()
         .name("heartbeat".to_owned())
-        .spawn(watch)?;
+        .spawn(move || panics::keep(watch))?;
     tokio::task::spawn_local(async move {
         loop {
             beats.fetch_add(1, Ordering::Relaxed);

@@ -3,6 +3,7 @@
 //! Owns that thread. What a key does is decided elsewhere.
 
 use crate::brick::sensors::KEYS;
+use crate::panics;
 use crate::priority::{self, Rank};
 use std::fs::File;
 use std::io::{self, Read};
@@ -33,7 +34,7 @@ pub fn watch(tree: &Path) -> io::Result<Receiver<&'static str>> {
     };
     std::thread::Builder::new()
         .name("keys".to_owned())
-        .spawn(work)?;
+        .spawn(move || panics::keep(work))?;
     Ok(told)
 }
 

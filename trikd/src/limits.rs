@@ -86,6 +86,32 @@ pub const PROGRAM_PROCESSES: u64 = 64;
 pub const CONNECTIONS: u16 = 256;
 /// One part in so many of these is out of reach for each single computer.
 pub const CONNECTIONS_OF_OTHERS: usize = 4;
+/// Places beside these for this machine, whose page is one client for many browsers, and as many more for the computer in control:
+/// a person who has set the robot going comes back to it, however many others have come meanwhile.
+pub const CONNECTIONS_KEPT: usize = 8;
+/// Milliseconds that a connection keeps its place in the midst of a message while others wait for one: a network that loses a
+/// packet takes less, and who sends a byte now and then takes more.
+pub const STUCK_MS: u64 = 1_000;
+/// Connections to the control port beyond all places, which may say `stop` and ask what runs: so many that one which speaks at
+/// once is heard before thousands that come in the same second have pushed it out.
+pub const LOBBY: usize = 256;
+/// Connections to a port that are accepted in one turn of the serving thread: everything else, a stop first of all, waits so long.
+pub const ACCEPTS: usize = 4;
+/// The same for the control port, at which a stop may stand behind many.
+pub const CONTROL_ACCEPTS: usize = 32;
+/// Bytes in which one of them must have said so.
+pub const LOBBY_BYTES: usize = 64;
+/// Milliseconds that one of them may take for that.
+pub const LOBBY_MS: u64 = 1_000;
+/// Connections that the kernel keeps until they are accepted: one for which there is no room comes again after a second, and
+/// that would be a second until a stop. The kernel takes less if it has to (listen(2)).
+pub const BACKLOG: i32 = 1024;
+/// Questions of multicast DNS that are looked at in a second; what comes beyond that is lost, as in a network that is full.
+pub const QUESTIONS_PER_SECOND: u32 = 200;
+/// Milliseconds of the pieces in which these are counted: so long a question may wait behind a flood.
+pub const QUESTIONS_WINDOW_MS: u64 = 100;
+/// Milliseconds between a panic of a thread or task and its next beginning: one that fails at once must not take the processor.
+pub const PANIC_MS: u64 = 100;
 /// Bytes that are read from a connection at once.
 pub const READ_BYTES: usize = 8 << 10;
 /// Milliseconds without a sent byte after which a keepalive is sent.
@@ -180,6 +206,8 @@ pub const SAVE_MS: u64 = 1_000;
 pub const MAILBOX_PORTS: u16 = 4;
 /// Threads for files that may be slow.
 pub const BLOCKING_THREADS: usize = 4;
+/// Milliseconds that one of them waits for more work before it ends.
+pub const BLOCKING_IDLE_MS: u64 = 2_000;
 /// Milliseconds that the guardian waits for the motors to rest.
 pub const GUARDIAN_REST_MS: u64 = 1_000;
 /// Milliseconds within which crashes are counted.
@@ -192,6 +220,11 @@ pub const SEND_BUFFER_BYTES: usize = 64 << 10;
 pub const GUARDIAN_END_MS: u64 = 8_000;
 /// Milliseconds between two beats of the serving thread.
 pub const BEAT_MS: u64 = 500;
+/// Milliseconds between two looks whether the guardian stands still.
+pub const GUARDIAN_LOOK_MS: u64 = 500;
+/// Looks in a row at which a process of a program stood still before the program is ended: one look may see a process that goes
+/// on at once.
+pub const STILL_LOOKS: u32 = 2;
 /// Beats that may be missing before it counts as hung.
 pub const BEATS_MISSING: u32 = 20;
 /// Rests of which the status tells how long they took.

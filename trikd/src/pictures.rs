@@ -5,6 +5,7 @@
 
 use crate::blame::{Blame, Os};
 use crate::limits;
+use crate::panics;
 use screen::Fault;
 use screen::{Pixels, picture};
 use std::fmt;
@@ -114,7 +115,7 @@ impl Pictures {
             let (path, newest, flag) = (self.path.clone(), self.newest.clone(), self.reads.clone());
             std::thread::Builder::new()
                 .name("pictures".to_owned())
-                .spawn(move || read_for(&path, &newest, &flag))?;
+                .spawn(move || panics::keep(|| read_for(&path, &newest, &flag)))?;
             *reads = true;
         }
         Ok(watcher)

@@ -61,6 +61,8 @@ struct Current {
     has_asked_nobody: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
+    /// Looks in a row at which a process of it stood still.
+    still_looks: u32,
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
     /// Orders to its debugger that it has not answered yet.
@@ -309,6 +311,7 @@ impl Supervisor {
             has_reported_error: false,
             has_asked_nobody: false,
             is_watched: false,
+            still_looks: 0,
             meter: Meter::default(),
             web: Vec::new(),
             orders: VecDeque::new(),
@@ -383,19 +386,24 @@ impl Supervisor {
         }
     }
 
-    /// A program that has too many processes ends: as root it would have no other limit.
+    /// A program that has too many processes ends: as root it would have no other limit. So does one that somebody has
+    /// stopped and not continued (SIGSTOP): what it has set going would go on.
     async fn count_processes(&mut self) {
-        if self.current.is_none() {
+        let Some(current) = &mut self.current else {
             return;
-        }
-        let count = u64::try_from(kill::below(Pid::this()).len()).unwrap_or(u64::MAX);
+        };
+        let (all, still) = kill::below_and_still(Pid::this());
+        let count = u64::try_from(all.len()).unwrap_or(u64::MAX);
         let limit = self.around.settings.processes;
-        if count > limit {
-            self.end(Cause::Greedy(format!(
-                "it had {count} processes, and {limit} are allowed"
-            )))
-            .await;
-        }
+        current.still_looks = still.map_or(0, |_| current.still_looks.saturating_add(1));
+        let why = match still {
+            _ if count > limit => format!("it had {count} processes, and {limit} are allowed"),
+            Some(pid) if current.still_looks >= limits::STILL_LOOKS => {
+                format!("its process {pid} stood still (SIGSTOP)")
+            }
+            _ => return,
+        };
+        self.end(Cause::Greedy(why)).await;
     }
 
     /// The one way out. First the motors, then the processes, then the motors once more, because until its last moment

@@ -6,6 +6,7 @@
 use crate::brick::sensors::{Gamepad, KEYS, Keys, NO_ECHO, NOT_PRESSED, Sensor, Vector};
 use crate::brick::{Brick, Group};
 use crate::limits;
+use crate::panics;
 use crate::protocol::telemetry::{self, Port, Snapshot};
 use crate::tree::{Access, Node};
 use frame::encode;
@@ -44,7 +45,7 @@ impl Sampler {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("sampler".to_owned())
-            .spawn(move || sample(&root, &asked, &publish))?;
+            .spawn(move || panics::keep(|| sample(&root, &asked, &publish)))?;
         Ok(Self {
             ask,
             newest,

@@ -1,6 +1,6 @@
 //! Sockets: all listeners or none, who gets in, and which task serves whom.
 //!
-//! `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
+//! `lobby` is for who has no place. `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
 //! are UDP, `page` is for browsers. What is said on a port is in `protocol`.
 
 // A request, a message or a command that is forgotten must not pass in silence.
@@ -10,6 +10,8 @@ pub mod control;
 pub mod datagrams;
 pub mod discovery;
 pub mod gamepad;
+mod guest;
+mod lobby;
 pub mod mailbox;
 pub mod page;
 pub mod recordings;
@@ -18,13 +20,13 @@ pub mod variables;
 pub mod video;
 
 use crate::access::Access;
+use crate::clients::Clients;
 use crate::error::Error;
 use crate::protocol::mail::plain;
-use crate::{limits, log};
-use frame::encode;
+use crate::{limits, log, panics};
+use ::page::seats::{Room, Seats};
+pub use guest::Guest;
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
-use std::cell::RefCell;
-use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::rc::Rc;
@@ -34,6 +36,9 @@ use tokio::net::{TcpListener, TcpStream};
 
 /// What the official controller sets: interactive traffic first.
 const TYPE_OF_SERVICE: u32 = 0x40;
+
+/// The port that robots are stopped at.
+const CONTROL: &str = "control";
 
 /// The listeners of one port.
 #[derive(Debug)]
@@ -56,7 +61,7 @@ fn bind_one(address: SocketAddr) -> io::Result<TcpListener> {
         socket.set_only_v6(address.ip() != IpAddr::V6(Ipv6Addr::UNSPECIFIED))?;
     }
     socket.bind(&address.into())?;
-    socket.listen(128)?;
+    socket.listen(limits::BACKLOG)?;
     TcpListener::from_std(socket.into())
 }
 
@@ -110,10 +115,15 @@ impl Port {
         S: 'static,
         F: Future<Output = ()> + 'static,
     {
-        for listener in self.listeners {
-            let (service, serve) = (service.clone(), serve.clone());
-            let serve = move |guest| serve(service.clone(), guest);
-            tokio::task::spawn_local(accept(self.name, listener, admission.clone(), serve));
+        let name = self.name;
+        for listener in self.listeners.into_iter().map(Rc::new) {
+            let (admission, service, serve) = (admission.clone(), service.clone(), serve.clone());
+            let accept = move || {
+                let (service, serve) = (service.clone(), serve.clone());
+                let serve = move |guest| serve(service.clone(), guest);
+                accept(name, listener.clone(), admission.clone(), serve)
+            };
+            tokio::task::spawn_local(panics::again(name, accept));
         }
     }
 }
@@ -121,120 +131,56 @@ impl Port {
 /// Who gets in, at all ports.
 #[derive(Debug)]
 pub struct Admission {
-    /// The allow-list.
-    pub access: Arc<Access>,
-    /// The connections that there are.
-    pub seats: Rc<Seats>,
+    access: Arc<Access>,
+    clients: Rc<Clients>,
+    seats: Arc<Seats>,
+    lobby: Arc<Seats>,
 }
 
-/// A connection that was let in.
-#[derive(Debug)]
-pub struct Guest {
-    /// The connection.
-    pub stream: TcpStream,
-    /// Its other end; IPv4 is shown as such.
-    pub peer: SocketAddr,
-    /// Its place among all connections.
-    pub seat: Seat,
-}
-
-/// The connections of all ports, each as the network that it comes from.
-#[derive(Debug)]
-pub struct Seats {
-    taken: RefCell<Vec<IpAddr>>,
-    /// Connections at once.
-    limit: usize,
-}
-
-/// Why there is no place for a connection; the client is to blame.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Full {
-    /// All of so many are taken.
-    All(usize),
-    /// One computer has so many, and no more are for it.
-    One(usize),
-}
-
-impl fmt::Display for Full {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::All(limit) => write!(
-                out,
-                "there are {limit} connections already: close some, or wait"
-            ),
-            Self::One(most) => write!(
-                out,
-                "there are {most} connections from there already: close some"
-            ),
-        }
-    }
-}
-
-/// Whose connections are counted together: an IPv6 computer has a whole network of addresses.
-fn origin(ip: IpAddr) -> IpAddr {
-    match ip {
-        IpAddr::V6(six) => Ipv6Addr::from_bits(six.to_bits() >> 64 << 64).into(),
-        IpAddr::V4(_) => ip,
-    }
-}
-
-impl Seats {
-    /// So many of them, all free.
-    pub fn new(limit: usize) -> Self {
+impl Admission {
+    /// By the allow-list, who is in control, and the connections that there are.
+    pub fn new(access: Arc<Access>, clients: Rc<Clients>, seats: Arc<Seats>) -> Self {
         Self {
-            taken: RefCell::default(),
-            limit,
+            access,
+            clients,
+            seats,
+            lobby: lobby::seats(),
         }
-    }
-
-    /// Lines for the status.
-    pub fn describe(&self) -> String {
-        let taken = self.taken.borrow().len();
-        format!("connections {taken} of {}\n", self.limit)
-    }
-
-    /// A place. A quarter of them is out of reach for each computer, so that none keeps all others out.
-    ///
-    /// # Errors
-    /// There is none.
-    pub fn take(self: &Rc<Self>, ip: IpAddr) -> Result<Seat, Full> {
-        let limit = self.limit;
-        let mut taken = self.taken.borrow_mut();
-        let ip = origin(ip);
-        if taken.len() >= limit {
-            return Err(Full::All(limit));
-        }
-        let most = limit - limit / limits::CONNECTIONS_OF_OTHERS;
-        if taken.iter().filter(|other| **other == ip).count() >= most {
-            return Err(Full::One(most));
-        }
-        taken.push(ip);
-        Ok(Seat(self.clone(), ip))
     }
 }
 
-/// One of the connections that may be there at once.
-#[derive(Debug)]
-pub struct Seat(Rc<Seats>, IpAddr);
-
-impl Drop for Seat {
-    fn drop(&mut self) {
-        let mut taken = self.0.taken.borrow_mut();
-        if let Some(index) = taken.iter().position(|ip| *ip == self.1) {
-            taken.swap_remove(index);
-        }
-    }
+/// The connections of all ports.
+pub fn seats(connections: usize) -> Arc<Seats> {
+    Seats::new(Room {
+        all: connections,
+        // The others are out of reach for each computer, so that none keeps all others out.
+        one: connections - connections / limits::CONNECTIONS_OF_OTHERS,
+        kept: limits::CONNECTIONS_KEPT,
+        stuck_time: Duration::from_millis(limits::STUCK_MS),
+        mute_time: Duration::from_millis(limits::SILENCE_MS),
+        spares_idle: true,
+    })
 }
 
 async fn accept<F>(
     name: &'static str,
-    listener: TcpListener,
+    listener: Rc<TcpListener>,
     admission: Rc<Admission>,
-    serve: impl Fn(Guest) -> F,
+    serve: impl Fn(Guest) -> F + Clone + 'static,
 ) where
     F: Future<Output = ()> + 'static,
 {
+    let at_once = match name {
+        CONTROL => limits::CONTROL_ACCEPTS,
+        _ => limits::ACCEPTS,
+    };
+    let mut left = at_once;
     loop {
+        if left == 0 {
+            tokio::task::yield_now().await;
+            left = at_once;
+        }
+        left -= 1;
         let (stream, peer) = match listener.accept().await {
             Ok(accepted) => accepted,
             Err(error) => {
@@ -249,19 +195,29 @@ async fn accept<F>(
             tracing::warn!(target: log::CLIENTS, "{name}: {peer} is not in the list of --allow");
             continue;
         }
-        let seat = match admission.seats.take(peer.ip()) {
-            Ok(seat) => seat,
+        match admission
+            .seats
+            .take(peer.ip(), admission.clients.whom(peer.ip()))
+        {
+            Ok(seat) => {
+                prepare(&stream);
+                let guest = Guest {
+                    stream,
+                    peer,
+                    seat,
+                    begun: Vec::new(),
+                    full: None,
+                };
+                tokio::task::spawn_local(serve(guest));
+            }
             Err(why) => {
                 tracing::warn!(target: log::CLIENTS, "{name}: {peer} is refused: {why}");
-                if name == "control" {
-                    // The only port on which people read; if it has no room for it, there is nobody to tell.
-                    let _ = stream.try_write(&encode(format!("error: {why}").as_bytes()));
+                // The only port on which robots are stopped, and on which people read.
+                if name == CONTROL {
+                    lobby::wait(&admission.lobby, stream, peer, why, serve.clone());
                 }
-                continue;
             }
-        };
-        prepare(&stream);
-        tokio::task::spawn_local(serve(Guest { stream, peer, seat }));
+        }
     }
 }
 

@@ -6,10 +6,11 @@ use crate::access::Access;
 use crate::blame::Os;
 use crate::clients::Clients;
 use crate::limits;
+use crate::panics::Panics;
 use crate::program::Programs;
 use crate::program::child::Owner;
-use crate::server::Seats;
 use crate::server::mailbox::Mailbox;
+use page::seats::Seats;
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::net::IpAddr;
@@ -58,7 +59,9 @@ pub struct Status {
     /// Messages between robots.
     pub mailbox: Rc<Mailbox>,
     /// Connections on all ports.
-    pub seats: Rc<Seats>,
+    pub seats: Arc<Seats>,
+    /// Mistakes of trikd itself.
+    pub panics: Arc<Panics>,
     /// Who is connected.
     pub clients: Rc<Clients>,
 }
@@ -76,7 +79,7 @@ impl Status {
             .as_ref()
             .map_or("the user of trikd", |owner| owner.user.name.as_str());
         format!(
-            "trikd {} for {} s\nports {}\ntree {} {state}\naccess {}\nprograms run as {user}, with {} MiB and {} processes\n{}{}{}{}",
+            "trikd {} for {} s\nports {}\ntree {} {state}\naccess {}\nprograms run as {user}, with {} MiB and {} processes\n{}{}{}{}{}",
             env!("CARGO_PKG_VERSION"),
             self.started.elapsed().as_secs(),
             self.ports,
@@ -87,13 +90,14 @@ impl Status {
             self.programs.describe(),
             self.mailbox.describe(),
             self.seats.describe(),
+            self.panics.describe(),
             self.clients.describe()
         )
     }
 }
 
 /// Answers for ever.
-pub async fn serve(status: Status, listener: UnixListener) {
+pub async fn serve(status: Rc<Status>, listener: Rc<UnixListener>) {
     loop {
         match listener.accept().await {
             Ok((stream, _)) => {

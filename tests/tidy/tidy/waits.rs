@@ -3,7 +3,7 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 20] = [
+const PAUSES: [(&str, usize, &str); 21] = [
     ("bridge/src/http.rs", 1, "between two looks"),
     ("page/src/server/tests.rs", 1, "between two looks"),
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
@@ -27,6 +27,7 @@ const PAUSES: [(&str, usize, &str); 20] = [
     ),
     ("trik/tests/it/rig.rs", 1, "between two looks"),
     ("trikd/tests/it/crash.rs", 1, "between two looks"),
+    ("trikd/tests/it/crowds.rs", 1, "between two bytes"),
     (
         "trikd/tests/it/frames.rs",
         3,

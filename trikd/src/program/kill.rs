@@ -34,6 +34,8 @@ pub fn adopt_orphans() -> Result<(), Error> {
 struct Process {
     pid: i32,
     parent: i32,
+    /// Was stopped by a signal.
+    is_still: bool,
 }
 
 fn processes() -> Vec<Process> {
@@ -51,19 +53,42 @@ fn process(pid: i32) -> Option<Process> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // The name in brackets may hold anything.
     let mut fields = stat.rsplit(')').next()?.split_ascii_whitespace();
-    let is_dead = matches!(fields.next()?, "Z" | "X");
+    let state = fields.next()?;
+    let is_dead = matches!(state, "Z" | "X");
     (!is_dead).then(|| {
         Some(Process {
             pid,
             parent: fields.next()?.parse().ok()?,
+            is_still: state == "T",
         })
     })?
 }
 
+/// Whether a process was stopped by a signal and has not gone on.
+pub fn stands_still(pid: Pid) -> bool {
+    process(pid.as_raw()).is_some_and(|process| process.is_still)
+}
+
 /// Everybody below a process, without it.
 pub fn below(ancestor: Pid) -> Vec<Pid> {
+    below_of(ancestor, &processes())
+}
+
+/// The same, and who of them was stopped by a signal.
+pub fn below_and_still(ancestor: Pid) -> (Vec<Pid>, Option<Pid>) {
+    let all = processes();
+    let found = below_of(ancestor, &all);
+    let is_still = |pid: &&Pid| {
+        all.iter()
+            .any(|process| process.is_still && process.pid == pid.as_raw())
+    };
+    let still = found.iter().find(is_still).copied();
+    (found, still)
+}
+
+fn below_of(ancestor: Pid, all: &[Process]) -> Vec<Pid> {
     let mut children: HashMap<i32, Vec<i32>> = HashMap::new();
-    for process in processes() {
+    for process in all {
         children
             .entry(process.parent)
             .or_default()
@@ -197,6 +222,8 @@ mod tests {
         while !stands() {
             std::thread::yield_now();
         }
+        assert_eq!(below_and_still(Pid::this()).1, Some(stranger));
+        assert!(stands_still(stranger) && !stands_still(Pid::this()));
         sweep(pid, &[]);
         let _ = child.kill();
         child.wait().unwrap();

@@ -5,6 +5,7 @@
 
 use crate::blame::Os;
 use crate::limits;
+use crate::panics;
 use crate::priority::{self, Rank};
 use crate::tree::{Access, Tree};
 use std::fmt;
@@ -86,7 +87,7 @@ impl Rest {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("rest".to_owned())
-            .spawn(move || serve(&root, &asked))?;
+            .spawn(move || panics::keep(|| serve(&root, &asked)))?;
         Ok(Self { ask })
     }
 
@@ -112,6 +113,7 @@ fn serve(root: &Path, asked: &Receiver<Answer>) {
     let tree = Tree::new(root);
     let stop = tree.node("stop", Access::Write);
     while let Ok(first) = asked.recv() {
+        panics::seam("rest", || root.join("panic").exists());
         // A caller that asked meanwhile is served by the same write.
         let others: Vec<_> = asked.try_iter().collect();
         let done = stop.write("1\n").map_err(|error| Failure::of(root, error));

@@ -14,10 +14,12 @@ use crate::program::{Command, Programs};
 use crate::protocol::control::Request;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
-use crate::{limits, log, scripts};
+use crate::{limits, log, panics, scripts};
+use page::seats::Full;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// What this port works with.
@@ -48,9 +50,25 @@ struct Session {
     control: Rc<Control>,
     client: Rc<Client>,
     sending: Sending,
+    /// Why it has no place: then it may only stop.
+    full: Option<Full>,
 }
 
 impl Session {
+    /// Whether somebody without a place may ask this; ends the connection if not.
+    fn is_heard(&self, request: &Request) -> bool {
+        let Some(why) = self.full else { return true };
+        let is_heard = matches!(
+            request,
+            Request::Stop | Request::Status | Request::Version | Request::Keepalive
+        );
+        if !is_heard {
+            self.error(&why.to_string());
+            self.client.outbox.close();
+        }
+        is_heard
+    }
+
     fn error(&self, text: &str) {
         self.client.outbox.send(format!("error: {text}").as_bytes());
     }
@@ -158,6 +176,10 @@ impl Handler for Session {
             self.client.peer,
             String::from_utf8_lossy(begin)
         );
+        if !self.is_heard(&request) {
+            return;
+        }
+        panics::seam("control", || frame == b"panic");
         match request {
             // What is unknown has no answer, as on the original robots.
             Request::Keepalive | Request::Unknown => {}
@@ -217,29 +239,58 @@ impl Handler for Session {
     }
 
     fn complaint(&self, reason: &str) -> Option<Vec<u8>> {
-        Some(format!("error: {reason}").into_bytes())
+        let text = match self.full {
+            Some(why) => format!("error: {why}"),
+            None => format!("error: {reason}"),
+        };
+        Some(text.into_bytes())
     }
 }
 
+/// Tells who has no place so, when it has had its time to say `stop`.
+async fn dismiss(outbox: &Outbox, full: Option<Full>) {
+    if let Some(why) = full {
+        tokio::time::sleep(Duration::from_millis(limits::LOBBY_MS)).await;
+        outbox.send(format!("error: {why}").as_bytes());
+        outbox.close();
+    }
+    std::future::pending().await
+}
+
 /// Serves one client.
-pub async fn serve(control: Rc<Control>, guest: Guest) {
+pub async fn serve(control: Rc<Control>, mut guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
-    let client = control.clients.add("control", guest.peer, outbox.clone());
-    tracing::info!(target: log::CLIENTS, "control: {} has come", guest.peer);
+    let (peer, full) = (guest.peer, guest.full);
+    let client = control.clients.add("control", peer, outbox.clone());
+    if full.is_none() {
+        tracing::info!(target: log::CLIENTS, "control: {peer} has come");
+    }
     let mut handler = Session {
         control: control.clone(),
         sending: Sending::new(control.recordings.clone(), client.clone()),
         client,
+        full,
     };
-    let why = connection::serve(
+    let frame_bytes = match full {
+        None => control.upload_bytes,
+        Some(_) => limits::SMALL_FRAME_BYTES,
+    };
+    let served = connection::serve(
         guest.stream,
-        control.upload_bytes,
+        &guest.begun,
+        &mut guest.seat,
+        frame_bytes,
         &control.held,
         &outbox,
         &mut handler,
-    )
-    .await;
+    );
+    let why = tokio::select! {
+        why = served => why,
+        () = dismiss(&outbox, full) => return,
+    };
     handler.leave_debugger().await;
-    tracing::info!(target: log::CLIENTS, "control: {} has left: {why}", guest.peer);
+    if full.is_none() {
+        tracing::info!(target: log::CLIENTS, "control: {peer} has left: {why}");
+    }
     drop(guest.seat);
 }

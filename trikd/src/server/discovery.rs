@@ -3,12 +3,14 @@
 //! Owns one socket and its memberships. Without it everything else works: addresses can be typed.
 
 use super::mailbox::local_ip;
+use crate::limits;
 use crate::protocol::dns::{Robot, label, questions};
 use socket2::{Domain, InterfaceIndexOrAddress, Protocol, SockRef, Socket, Type};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::time::Duration;
 use tokio::net::UdpSocket;
+use tokio::time::{Instant, sleep_until};
 
 const GROUP: Ipv4Addr = Ipv4Addr::new(224, 0, 0, 251);
 const PORT: u16 = 5353;
@@ -40,6 +42,36 @@ fn join(socket: &UdpSocket) {
     }
 }
 
+/// How many questions are still looked at in this piece of time: a flood of them is somebody's mistake or malice, and each costs
+/// a look at the ways in the network.
+struct Budget {
+    until: Instant,
+    left: u32,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self {
+            until: Instant::now(),
+            left: 0,
+        }
+    }
+}
+
+impl Budget {
+    /// Waits until one more may be looked at, and counts it.
+    async fn wait(&mut self) {
+        if self.left == 0 {
+            sleep_until(self.until).await;
+            let window_ms = limits::QUESTIONS_WINDOW_MS;
+            let pieces = u32::try_from(1000 / window_ms).unwrap_or(1);
+            self.until = Instant::now() + Duration::from_millis(window_ms);
+            self.left = limits::QUESTIONS_PER_SECOND / pieces;
+        }
+        self.left -= 1;
+    }
+}
+
 /// What is told of this robot.
 #[derive(Clone, Debug)]
 pub struct About {
@@ -68,7 +100,9 @@ pub async fn answer(about: About) -> io::Result<()> {
     ];
     let mut buffer = [0; 1500];
     let mut networks = tokio::time::interval(Duration::from_millis(JOIN_MS));
+    let mut budget = Budget::default();
     loop {
+        budget.wait().await;
         let (size, from) = tokio::select! {
             _ = networks.tick() => {
                 join(&socket);

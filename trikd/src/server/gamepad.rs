@@ -117,14 +117,16 @@ impl Gamepad {
         self.window.1 > limits::GAMEPAD_LINES_PER_SECOND
     }
 
-    fn line(&mut self, line: &[u8]) {
+    /// Does what a line asks for; whether it is one that gamepads send.
+    fn line(&mut self, line: &[u8]) -> bool {
         self.client.count();
         self.heard = Instant::now();
         let line = Line::parse(line);
+        let is_known = !matches!(line, Line::Nonsense(_));
         // What lets go passes in any case.
         let lets_go = matches!(&line, Line::Command(text) if text.ends_with("up"));
         if self.is_flood() && !lets_go {
-            return;
+            return is_known;
         }
         match line {
             Line::Keepalive(wait_ms) => {
@@ -141,6 +143,7 @@ impl Gamepad {
                 }
             }
         }
+        is_known
     }
 
     /// Remembers what is held.
@@ -204,8 +207,10 @@ pub async fn serve(gamepads: Rc<Gamepads>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
-        seat,
+        mut seat,
+        ..
     } = guest;
+    let place = seat.place();
     // Driving is control.
     if !gamepads.access.may_control(peer.ip()) {
         tracing::warn!(
@@ -240,8 +245,14 @@ pub async fn serve(gamepads: Rc<Gamepads>, guest: Guest) {
             read = stream.read(&mut buffer) => match read {
                 // A reset is how telephones say goodbye.
                 Ok(0) | Err(_) => break,
-                Ok(size) => lines.feed(&buffer[..size], |line| gamepad.line(line)),
+                Ok(size) => {
+                    let mut is_whole = false;
+                    lines.feed(&buffer[..size], |line| is_whole |= gamepad.line(line));
+                    place.hears(size, is_whole, buffer[size - 1] != b'\n');
+                }
             },
+            // What it holds is let go of below.
+            () = seat.lost() => break,
             () = sleep_until(next) => gamepad.tick(),
         }
     }

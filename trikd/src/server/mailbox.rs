@@ -3,7 +3,7 @@
 //! Owns the list of known robots, the open links to them, our hull number, and what is remembered of these. A robot is
 //! known by the address of its server; hull numbers need not be unique.
 
-use super::{Guest, Seats};
+use super::Guest;
 use crate::clients::Clients;
 use crate::connection::{self, Handler, Held, VERSION};
 use crate::outbox::Outbox;
@@ -12,12 +12,14 @@ use crate::protocol::mail::{Message, NOWHERE, plain};
 use crate::protocol::program::mailbox::Question;
 use crate::scripts;
 use crate::{limits, log};
+use page::seats::{Seat, Seats};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::fmt::Write;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::{Instant, sleep, timeout};
@@ -50,7 +52,7 @@ pub struct Surroundings {
     /// Bytes of half frames.
     pub held: Rc<Held>,
     /// Connections on all ports.
-    pub seats: Rc<Seats>,
+    pub seats: Arc<Seats>,
     /// The part that runs programs, to which messages go.
     pub programs: Rc<Programs>,
     /// Addresses that this robot serves at; none: all.
@@ -509,7 +511,13 @@ impl Handler for Mails {
     }
 }
 
-async fn converse(mailbox: &Rc<Mailbox>, stream: TcpStream, peer: SocketAddr, link: &Rc<Link>) {
+async fn converse(
+    mailbox: &Rc<Mailbox>,
+    stream: TcpStream,
+    seat: &mut Seat,
+    peer: SocketAddr,
+    link: &Rc<Link>,
+) {
     if let Ok(local) = stream.local_addr() {
         link.local.set(plain(local.ip()));
     }
@@ -523,6 +531,8 @@ async fn converse(mailbox: &Rc<Mailbox>, stream: TcpStream, peer: SocketAddr, li
     };
     let why = connection::serve(
         stream,
+        &[],
+        seat,
         limits::SMALL_FRAME_BYTES,
         &around.held,
         &link.outbox,
@@ -558,11 +568,12 @@ async fn connect(mailbox: Rc<Mailbox>, server: SocketAddr, link: Rc<Link>, tries
         match timeout(wait, reach(&mailbox.around.addresses, server)).await {
             Ok(Ok(stream)) => {
                 let _ = stream.set_nodelay(true);
-                let Ok(seat) = mailbox.around.seats.take(server.ip()) else {
+                let around = &mailbox.around;
+                let whom = around.clients.whom(server.ip());
+                let Ok(mut seat) = around.seats.take(server.ip(), whom) else {
                     break;
                 };
-                converse(&mailbox, stream, server, &link).await;
-                return drop(seat);
+                return converse(&mailbox, stream, &mut seat, server, &link).await;
             }
             Ok(Err(_)) => sleep(wait).await,
             Err(_) => {}
@@ -576,12 +587,11 @@ async fn connect(mailbox: Rc<Mailbox>, server: SocketAddr, link: Rc<Link>, tries
 }
 
 /// Serves a robot that has come.
-pub async fn serve(mailbox: Rc<Mailbox>, guest: Guest) {
+pub async fn serve(mailbox: Rc<Mailbox>, mut guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let link = Rc::new(Link {
         outbox,
         local: Cell::new(NOWHERE),
     });
-    converse(&mailbox, guest.stream, guest.peer, &link).await;
-    drop(guest.seat);
+    converse(&mailbox, guest.stream, &mut guest.seat, guest.peer, &link).await;
 }

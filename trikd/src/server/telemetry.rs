@@ -73,7 +73,7 @@ impl Handler for Session {
 }
 
 /// Serves one client.
-pub async fn serve(telemetry: Rc<Telemetry>, guest: Guest) {
+pub async fn serve(telemetry: Rc<Telemetry>, mut guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let client = telemetry
         .clients
@@ -86,6 +86,8 @@ pub async fn serve(telemetry: Rc<Telemetry>, guest: Guest) {
     };
     let why = connection::serve(
         guest.stream,
+        &guest.begun,
+        &mut guest.seat,
         limits::SMALL_FRAME_BYTES,
         &telemetry.held,
         &outbox,

@@ -6,6 +6,7 @@ use crate::limits;
 use crate::outbox::Outbox;
 use crate::program::{Command, Programs};
 use crate::protocol::http::{Head, answer, parse};
+use page::seats::Seat;
 use std::io;
 use std::net::SocketAddr;
 use std::rc::Rc;
@@ -15,26 +16,34 @@ use tokio::net::TcpStream;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
-/// Reads the head of a request, as long as it comes in time and is short.
-pub async fn head(stream: &mut TcpStream) -> Head {
+/// Reads the head of a request, as long as it comes in time and is short, and nobody else needs the place.
+pub async fn head(stream: &mut TcpStream, seat: &mut Seat) -> Head {
+    let place = seat.place();
     let mut bytes = Vec::new();
     let mut buffer = [0; 1024];
     let read = async {
         loop {
             match stream.read(&mut buffer).await {
                 Ok(0) | Err(_) => return Head::Nonsense,
-                Ok(size) => bytes.extend_from_slice(&buffer[..size]),
+                Ok(size) => {
+                    bytes.extend_from_slice(&buffer[..size]);
+                    place.hears(size, false, true);
+                }
             }
             match parse(&bytes) {
                 Head::Partial if bytes.len() < limits::HTTP_HEAD_BYTES => {}
                 Head::Partial => return Head::Nonsense,
-                head @ (Head::Get { .. } | Head::OtherMethod | Head::Nonsense) => return head,
+                head @ (Head::Get { .. } | Head::OtherMethod | Head::Nonsense) => {
+                    place.is_good();
+                    return head;
+                }
             }
         }
     };
-    timeout(Duration::from_millis(limits::SILENCE_MS), read)
-        .await
-        .unwrap_or(Head::Nonsense)
+    tokio::select! {
+        head = timeout(Duration::from_millis(limits::SILENCE_MS), read) => head.unwrap_or(Head::Nonsense),
+        () = seat.lost() => Head::Nonsense,
+    }
 }
 
 /// Tells where the running diagram is, one JSON object on each line, until the client leaves.
@@ -80,10 +89,11 @@ pub async fn serve(variables: Rc<Variables>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
-        seat,
+        mut seat,
+        ..
     } = guest;
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
-    let reply = match head(&mut stream).await {
+    let reply = match head(&mut stream, &mut seat).await {
         Head::Get { path, .. } if path == "/web/" || path == "/web" => {
             if variables.programs.runs() {
                 let (ask, told) = oneshot::channel();

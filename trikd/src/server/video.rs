@@ -80,10 +80,11 @@ pub async fn serve(video: Rc<Video>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
-        seat,
+        mut seat,
+        ..
     } = guest;
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
-    let reply = match head(&mut stream).await {
+    let reply = match head(&mut stream, &mut seat).await {
         Head::Get { path: asked, query } if asked == "/" => {
             let first = match video.pictures.watch() {
                 Ok(mut watcher) => tokio::select! {

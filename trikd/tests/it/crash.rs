@@ -1,8 +1,12 @@
-//! The serving process is killed: motors rest, its program is gone, and another one serves.
+//! The serving process is killed, or a process is stopped (SIGSTOP): motors rest, programs are gone, and robots are served.
 
 use crate::rig::robot;
 use harness::{eventually, processes};
 use nix::sys::signal::Signal;
+use std::time::{Duration, Instant};
+
+/// What is noticed within a second has this much on a machine on which other tests run.
+const NOTICED: Duration = Duration::from_secs(5);
 
 #[test]
 fn a_killed_serving_process_leaves_rest_and_no_program_and_is_followed_by_another() {
@@ -68,5 +72,75 @@ fn a_program_that_stops_the_serving_process_is_ended_and_another_one_serves() {
     });
     robot.client("control").sync();
     robot.expect_log("was stopped with SIGSTOP");
+    assert_eq!(robot.end(), Some(0));
+}
+
+#[test]
+fn a_guardian_that_is_stopped_is_noticed_and_goes_on_and_motors_rest() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    client.keep_alive();
+    client.send("file:a:#!/bin/sh\necho go\nexec sleep 1000\n");
+    client.send("run:a");
+    client.until("print: go");
+    let daemon = robot.daemon();
+    let children = processes::children(daemon);
+    robot.forget_rest();
+    let begin = Instant::now();
+    processes::signal(robot.guardian(), Signal::SIGSTOP);
+    eventually("rest", || robot.has_rested());
+    let rested = begin.elapsed();
+    println!("rest {rested:?} after the guardian was stopped");
+    assert!(rested < NOTICED, "{rested:?}");
+    client.until("info: a was stopped by trikd, whose guardian stood still after ");
+    assert!(children.iter().all(|pid| !processes::is_alive(*pid)));
+    eventually("a guardian that goes on", || {
+        !processes::is_stopped(robot.guardian())
+    });
+    assert_eq!(robot.daemon(), daemon);
+    robot.expect_log("the guardian was stopped (SIGSTOP)");
+    assert_eq!(robot.end(), Some(0));
+}
+
+#[test]
+fn a_program_that_is_stopped_is_ended_and_motors_rest() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    client.keep_alive();
+    for (name, text) in [
+        ("a", "#!/bin/sh\necho go\nexec sleep 1000\n"),
+        ("b", "#!/bin/sh\nsleep 1000 &\necho go\nwait\n"),
+    ] {
+        client.send(&format!("file:{name}:{text}"));
+        client.send(&format!("run:{name}"));
+        client.until("print: go");
+        let program = processes::children(robot.daemon())[0];
+        let stopped = processes::children(program).first().copied();
+        let stopped = stopped.unwrap_or(program);
+        robot.forget_rest();
+        let begin = Instant::now();
+        processes::signal(stopped, Signal::SIGSTOP);
+        eventually("rest", || robot.has_rested());
+        let rested = begin.elapsed();
+        println!("rest {rested:?} after process {stopped} of {name} was stopped");
+        assert!(rested < NOTICED, "{rested:?}");
+        let told = client.until(&format!("error: {name} was stopped after "));
+        let why = format!(": its process {stopped} stood still (SIGSTOP)");
+        assert!(told.ends_with(&why), "{told}");
+        assert!(!processes::is_alive(program) && !processes::is_alive(stopped));
+    }
+}
+
+#[test]
+fn a_terminal_cannot_stop_what_guards_motors() {
+    let robot = robot(&[]);
+    let (daemon, mut client) = (robot.daemon(), robot.client("control"));
+    for pid in [robot.guardian(), daemon] {
+        processes::signal(pid, Signal::SIGTSTP);
+    }
+    robot.expect_log("what guards motors is not stopped");
+    client.sync();
+    assert!(!processes::is_stopped(daemon) && !processes::is_stopped(robot.guardian()));
+    assert_eq!(robot.daemon(), daemon);
     assert_eq!(robot.end(), Some(0));
 }

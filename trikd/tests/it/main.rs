@@ -9,6 +9,8 @@ mod access;
 mod board;
 /// What the serving process leaves when it is killed.
 mod crash;
+/// Thousands of connections, bursts, floods.
+mod crowds;
 /// The debugger of diagrams, with several clients.
 mod debugging;
 /// Diagrams of TRIK Studio.
@@ -21,6 +23,8 @@ mod frames;
 mod fuzz;
 /// Gamepads.
 mod gamepad;
+/// What is given back after load.
+mod growth;
 /// Programs in JavaScript.
 mod javascript;
 /// JavaScript under the daemon, hostile programs, and what its document says.
@@ -33,6 +37,8 @@ mod log;
 mod mailbox;
 /// The table of what the controller has.
 mod official;
+/// Mistakes of trikd itself.
+mod panics;
 /// Programs: how they are run, what they say, how they end.
 mod programs;
 /// A running trikd and its clients.

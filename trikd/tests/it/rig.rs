@@ -118,7 +118,18 @@ fn lines_of(pipe: impl Read + Send + 'static) -> Receiver<String> {
 impl Robot {
     /// Starts it and waits until it is ready.
     pub fn start(home: Board, tree: PathBuf, words: &[&str]) -> Self {
+        Self::start_with(home, tree, words, &[])
+    }
+
+    /// The same with these variables of the environment.
+    pub fn start_with(
+        home: Board,
+        tree: PathBuf,
+        words: &[&str],
+        variables: &[(&str, &str)],
+    ) -> Self {
         let mut command = command(&home, &tree, words);
+        command.envs(variables.iter().copied());
         command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
