@@ -237,7 +237,7 @@ impl Operations for View {
         }
         let mut open = lock(&self.open);
         if open.files.len() >= OPEN_MAX {
-            return Err(Error::TooManyOpen);
+            return Err(Error::TooManyOpen(format!("{OPEN_MAX} in the view")));
         }
         open.next += 1;
         let fh = open.next;

@@ -3,6 +3,7 @@
 //! Owns the reading of configuration files. Makes the same checks as the live node and opens no device.
 
 use crate::convert::shared::Cache;
+use crate::convert::shared::copies::Copies;
 use crate::convert::{Recipe, Workshop};
 use crate::reload;
 use config::description::{Config, Place};
@@ -57,6 +58,7 @@ pub fn check(
     let loaded = load(file, paths)?;
     let workshop = Workshop {
         cache: &paths.cache,
+        copies: &Copies::default(),
         progress,
     };
     for description in reload::all(&loaded.config) {

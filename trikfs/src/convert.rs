@@ -15,6 +15,7 @@ use config::program::{StageId, Vm};
 use converter::{Conversion, Direction};
 use inline_c::Compiler;
 use lua::StatePool;
+use shared::copies::Copies;
 use shared::{Cache, Library, NativeStage};
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -54,6 +55,8 @@ pub type LogSink = Arc<dyn Fn(&str) + Send + Sync>;
 pub struct Workshop<'a> {
     /// Keeps compiled and copied libraries.
     pub cache: &'a Cache,
+    /// Which copies of shared libraries it loads.
+    pub copies: &'a Copies,
     /// Told before something that takes long.
     pub progress: &'a dyn Fn(&str),
 }
@@ -293,7 +296,9 @@ fn plan(
     let library = match &stage.kind {
         StageKind::Lua => None,
         StageKind::Library { path, name } => {
-            let loaded = Library::load(path, name.as_deref(), workshop.cache);
+            let copied = workshop.copies.of(path, workshop.cache);
+            let loaded =
+                copied.and_then(|copy| Library::load_copy_of(path, &copy, name.as_deref()));
             Some(loaded.map_err(|error| refused(&error))?)
         }
         StageKind::InlineC { code } => {
@@ -331,6 +336,13 @@ pub struct Pipeline {
     read: Chain,
     /// Absent when both directions go through the same stages.
     write: Option<Chain>,
+}
+
+impl Pipeline {
+    /// Bytes that its Lua state holds; what native converters allocate is not known.
+    pub fn memory(&self) -> usize {
+        self.vm.as_ref().map_or(0, Vm::memory)
+    }
 }
 
 impl Drop for Pipeline {

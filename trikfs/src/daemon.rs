@@ -4,12 +4,15 @@
 //! actuators come to rest before the process ends. The guardian, which is another process, mounts before and unmounts after.
 //! Knows no request of the kernel and no kind of device.
 
+use crate::admission::{Admission, machine_bytes};
 use crate::convert::shared::Cache;
+use crate::convert::shared::copies::CopyNames;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::failure::Failure;
 use crate::fs::{Forest, Fs, OpenFiles};
 use crate::guardian::ledger::Ledger;
+use crate::guardian::oversight::Oversight;
 use crate::node::{Node, rest_all};
 use crate::reload::{Reloader, Setup};
 use crate::sample_bus::Readers;
@@ -18,7 +21,9 @@ use crate::tree::{Owner, Tree};
 use config::load::Loader;
 use nix::sys::resource::{Resource, getrlimit, setrlimit};
 use nix::sys::signal::{SigSet, Signal};
+use nix::unistd::getppid;
 use std::os::fd::OwnedFd;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -44,6 +49,8 @@ pub struct Options {
     pub config: Option<PathBuf>,
     /// Bytes that were in force before a crash; they take the place of the file's.
     pub in_force: Option<Vec<u8>>,
+    /// The copies of libraries that were in force with them.
+    pub promised: CopyNames,
     /// Where `include` looks.
     pub include_dirs: Vec<PathBuf>,
     /// Where shared libraries are looked for after the configuration's directory.
@@ -78,6 +85,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
     config::program::keep_memory_together();
     raise_file_limit();
     let engine = Engine::start().map_err(|error| Failure::threads(&error))?;
+    engine.panics.listen();
     let (end, ended) = channel();
     wait_for_signals(signals, end.clone())?;
 
@@ -89,6 +97,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         None,
         &mut last_ino,
     )));
+    oversee(&engine, &forest);
     let files = Arc::new(OpenFiles::default());
     let base_dir = options
         .config
@@ -106,6 +115,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         },
         base_dir,
         cache: options.cache,
+        promised: options.promised,
         owner: options.owner,
         last_ino,
         ledger: options.ledger,
@@ -115,6 +125,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         engine.clone(),
         forest.clone(),
         files,
+        Admission::new(options.owner.uid, machine_bytes()),
         reloader.clone(),
     ));
     serve(options.device, fs, options.transport, end)?;
@@ -145,6 +156,14 @@ pub fn run(options: Options) -> Result<(), Failure> {
     engine.refuse_all(&Error::ShuttingDown);
     engine.stop();
     outcome
+}
+
+/// Has the guardian, which is the parent, looked at while actuators are driven.
+fn oversee(engine: &Arc<Engine>, forest: &Arc<Forest>) {
+    let forest = forest.clone();
+    let guardian = getppid().as_raw().unsigned_abs();
+    let nodes = Box::new(move || forest.tree().nodes().to_vec());
+    engine.oversee(Oversight::new(guardian, engine, nodes));
 }
 
 /// Readers of shared memory see the end, even of nodes that something still holds.
@@ -210,14 +229,17 @@ fn serve(
 ) -> Result<(), Failure> {
     let thread = std::thread::Builder::new().name("kernel".to_owned());
     let spawned = thread.spawn(move || {
-        let served = match transport {
+        let serve = || match transport {
             Transport::Native => crate::transport::native::serve(device, fs),
             #[cfg(feature = "fuser")]
             Transport::Fuser => crate::transport::fuser::serve(device, fs),
         };
-        let _ = end.send(match served {
-            Ok(()) => End::Unmounted,
-            Err(error) => End::Failed(Failure::system("the kernel cannot be served", error)),
+        let what = "the kernel cannot be served";
+        // Without this thread nobody would be served, and nobody would know: another daemon has to be started.
+        let _ = end.send(match catch_unwind(AssertUnwindSafe(serve)) {
+            Ok(Ok(())) => End::Unmounted,
+            Ok(Err(error)) => End::Failed(Failure::system(what, error)),
+            Err(_) => End::Failed(Failure::system(what, "a panic, which was told above")),
         });
     });
     spawned

@@ -6,8 +6,10 @@ use crate::device::i2c::bus::Buses;
 use crate::errno::Error;
 
 use crate::events::{Poller, Schedule, lock};
+use crate::guardian::oversight::Oversight;
 use crate::limits;
 use crate::log::Log;
+use crate::panics::Panics;
 use crate::programs::Programs;
 use crate::sample_bus::{Readers, SampleBus};
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
@@ -34,6 +36,10 @@ pub struct Engine {
     /// Times of sampling on one bus each, by the path of the bus.
     bus_schedules: Mutex<HashMap<PathBuf, Arc<Schedule>>>,
     kernel: OnceLock<Arc<dyn Kernel>>,
+    /// Of all threads of the process.
+    pub panics: Arc<Panics>,
+    /// Where there is a guardian to look at.
+    oversight: OnceLock<Arc<Oversight>>,
     parked: Mutex<HashSet<RequestId>>,
 }
 
@@ -50,6 +56,8 @@ impl Engine {
             samples: Default::default(),
             bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
+            panics: Arc::default(),
+            oversight: OnceLock::new(),
             parked: Mutex::default(),
         }))
     }
@@ -68,6 +76,18 @@ impl Engine {
             return schedule;
         }
         self.schedule.clone()
+    }
+
+    /// From here on somebody looks at the guardian while actuators are driven.
+    pub fn oversee(&self, oversight: Arc<Oversight>) {
+        let _ = self.oversight.set(oversight);
+    }
+
+    /// An actuator is about to be driven.
+    pub fn driven(&self) {
+        if let Some(oversight) = self.oversight.get() {
+            oversight.driven();
+        }
     }
 
     /// Takes a place in shared memory for the samples, if there are to be any; a failure is told and disturbs nobody.

@@ -81,8 +81,10 @@ pub enum Error {
     Converter(String),
     /// The open file belongs to a node that a reload changed or removed.
     Stale,
-    /// Too many open files.
-    TooManyOpen,
+    /// Too many open files; whose, and how many are allowed.
+    TooManyOpen(String),
+    /// The open files of a user hold as much memory as they may.
+    NoMemory(String),
     /// A queue or buffer is full.
     NoBuffers,
     /// More bytes than the file can take.
@@ -240,7 +242,8 @@ impl Error {
             Self::Recorded(errno, _) => *errno,
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
-            Self::TooManyOpen => libc::EMFILE,
+            Self::TooManyOpen(_) => libc::EMFILE,
+            Self::NoMemory(_) => libc::ENOMEM,
             Self::NoBuffers => libc::ENOBUFS,
             Self::TooLarge => libc::EFBIG,
             Self::Interrupted => libc::EINTR,
@@ -281,7 +284,8 @@ impl Error {
             | Self::Busy(_)
             | Self::NotRunning(_)
             | Self::Stale
-            | Self::TooManyOpen
+            | Self::TooManyOpen(_)
+            | Self::NoMemory(_)
             | Self::NoBuffers
             | Self::TooLarge
             | Self::Interrupted
@@ -357,7 +361,8 @@ impl fmt::Display for Error {
             Self::Crowded(what) => with_number(f, what, libc::EBUSY),
             Self::Malformed(what) => with_number(f, what, libc::EIO),
             Self::Stale => f.write_str("the node was changed or removed since the file was opened"),
-            Self::TooManyOpen => f.write_str("too many open files"),
+            Self::TooManyOpen(why) => write!(f, "too many open files: {why}"),
+            Self::NoMemory(why) => write!(f, "too much memory: {why}"),
             Self::NoBuffers => f.write_str("a queue is full"),
             Self::TooLarge => f.write_str("more bytes than the file can take"),
             Self::Interrupted => f.write_str("interrupted"),

@@ -55,6 +55,11 @@ pub trait OpenFile: Send + Sync {
         Ok(())
     }
 
+    /// Bytes of memory that the file keeps for its reader or writer beside itself.
+    fn held_bytes(&self) -> usize {
+        0
+    }
+
     /// The last descriptor is gone.
     fn release(&self) {}
 

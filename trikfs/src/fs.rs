@@ -6,6 +6,7 @@
 // A file that is forgotten must not be a text in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+use crate::admission::{Admission, Place};
 use crate::clock;
 use crate::engine::Engine;
 use crate::errno::Error;
@@ -28,6 +29,7 @@ use crate::transport::{
 };
 use crate::tree::{Kind, Tree};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 /// The tree in force, shared between the operations and the reloader.
 pub struct Forest {
@@ -61,45 +63,53 @@ pub struct OpenFiles {
 
 #[derive(Default)]
 struct Slots {
-    files: Vec<Option<Arc<dyn OpenFile>>>,
+    files: Vec<Option<Held>>,
     free: Vec<usize>,
 }
 
+/// An open file and what its user is charged for it.
+struct Held {
+    file: Arc<dyn OpenFile>,
+    _place: Place,
+}
+
 impl OpenFiles {
-    fn add(&self, file: Arc<dyn OpenFile>) -> Result<u64, Error> {
+    /// How many there may be is the admission's to say.
+    fn add(&self, file: Arc<dyn OpenFile>, place: Place) -> u64 {
         let mut slots = lock(&self.slots);
-        let index = if let Some(index) = slots.free.pop() {
-            index
-        } else {
-            if slots.files.len() >= limits::OPEN_FILES_MAX {
-                return Err(Error::TooManyOpen);
-            }
+        let index = slots.free.pop().unwrap_or_else(|| {
             slots.files.push(None);
             slots.files.len() - 1
-        };
-        slots.files[index] = Some(file);
-        Ok(index as u64)
+        });
+        slots.files[index] = Some(Held {
+            file,
+            _place: place,
+        });
+        index as u64
     }
 
     fn get(&self, fh: u64) -> Result<Arc<dyn OpenFile>, Error> {
         let slots = lock(&self.slots);
         let file = usize::try_from(fh)
             .ok()
-            .and_then(|index| slots.files.get(index)?.clone());
+            .and_then(|index| slots.files.get(index)?.as_ref())
+            .map(|held| held.file.clone());
         file.ok_or(Error::Stale)
     }
 
-    fn remove(&self, fh: u64) -> Option<Arc<dyn OpenFile>> {
+    fn remove(&self, fh: u64) -> Option<Held> {
         let mut slots = lock(&self.slots);
         let index = usize::try_from(fh).ok()?;
-        let file = slots.files.get_mut(index)?.take()?;
+        let held = slots.files.get_mut(index)?.take()?;
         slots.free.push(index);
-        Some(file)
+        Some(held)
     }
 
     /// Every open file, for a reload that retires nodes.
     pub fn all(&self) -> Vec<Arc<dyn OpenFile>> {
-        lock(&self.slots).files.iter().flatten().cloned().collect()
+        let slots = lock(&self.slots);
+        let held = slots.files.iter().flatten();
+        held.map(|held| held.file.clone()).collect()
     }
 }
 
@@ -111,7 +121,25 @@ pub struct Fs {
     engine: Arc<Engine>,
     forest: Arc<Forest>,
     files: Arc<OpenFiles>,
+    admission: Arc<Admission>,
+    refused: Refused,
     reloader: Arc<Reloader>,
+}
+
+/// When it was last told that somebody has too much open: once in a while is enough.
+#[derive(Default)]
+struct Refused(Mutex<Option<Instant>>);
+
+impl Refused {
+    fn tell(&self, engine: &Engine, error: &Error) {
+        let now = Instant::now();
+        let mut last = lock(&self.0);
+        let pause = Duration::from_millis(limits::MISTAKE_MS.into());
+        if last.is_none_or(|last| now.duration_since(last) >= pause) {
+            *last = Some(now);
+            engine.log.line(&format!("open: {error}"));
+        }
+    }
 }
 
 impl Fs {
@@ -120,12 +148,15 @@ impl Fs {
         engine: Arc<Engine>,
         forest: Arc<Forest>,
         files: Arc<OpenFiles>,
+        admission: Arc<Admission>,
         reloader: Arc<Reloader>,
     ) -> Self {
         Self {
             engine,
             forest,
             files,
+            admission,
+            refused: Refused::default(),
             reloader,
         }
     }
@@ -218,8 +249,9 @@ impl Fs {
                 Box::new(move || {
                     let lines = status_lines(forest.tree().nodes());
                     format!(
-                        "{}\n{}{}{lines}",
+                        "{}\n{}{}{}{lines}",
                         reloader.result_line(),
+                        engine.panics.status_lines(),
                         reloader.setup_lines(),
                         engine.samples.status_line()
                     )
@@ -312,13 +344,15 @@ impl Operations for Fs {
 
     fn open(&self, ino: u64, flags: i32, caller: Caller) -> Result<Opened, Error> {
         let kind = self.forest.tree().entry(ino)?.kind.clone();
+        let refused = |error: &Error| self.refused.tell(&self.engine, error);
+        let mut place = self.admission.admit(caller.uid).inspect_err(refused)?;
         let (file, access, flush) = self.open_kind(&kind, ino, flags, caller)?;
-        let added = self.files.add(file.clone());
-        if added.is_err() {
+        if let Err(error) = place.hold(file.held_bytes()).inspect_err(refused) {
             file.release();
+            return Err(error);
         }
         Ok(Opened {
-            fh: added?,
+            fh: self.files.add(file, place),
             access,
             flush,
         })
@@ -354,8 +388,8 @@ impl Operations for Fs {
     }
 
     fn release(&self, _ino: u64, fh: u64) {
-        if let Some(file) = self.files.remove(fh) {
-            file.release();
+        if let Some(held) = self.files.remove(fh) {
+            held.file.release();
         }
     }
 

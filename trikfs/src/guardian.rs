@@ -6,7 +6,8 @@
 //! It serves no request, runs no converter and reads no configuration, so it has little to crash of.
 //!
 //! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the
-//! daemon, `watch` waits for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators.
+//! daemon, `watch` waits for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators;
+//! `oversight` is how the daemon sees to it that this process is not stopped.
 
 // An end of the daemon, or a device to bring to rest, that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -16,6 +17,7 @@ mod child;
 pub mod inherit;
 pub mod ledger;
 pub mod mounted;
+pub mod oversight;
 pub mod rest;
 mod watch;
 

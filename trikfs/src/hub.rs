@@ -410,9 +410,14 @@ impl Subscription {
         self.hub.is_silent(self, patience)
     }
 
-    fn push(&self, tuples: &[u8]) {
+    /// Bytes that may wait for its reader.
+    pub fn queue_bytes(&self) -> usize {
         let most = (limits::QUEUE_BYTES / self.tuple_size).clamp(1, limits::QUEUE_TUPLES);
-        let limit = most * self.tuple_size;
+        most * self.tuple_size
+    }
+
+    fn push(&self, tuples: &[u8]) {
+        let limit = self.queue_bytes();
         let mut queue = lock(&self.queue);
         queue.ended = false;
         queue.lost = None;

@@ -5,6 +5,7 @@
 //! data takes), `hub` (one opening for many readers), `device` (sources), `convert` (converters).
 //! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `trial`, `kit`, `cli`.
 
+pub mod admission;
 pub mod bytes;
 pub mod check;
 pub mod cli;
@@ -31,6 +32,7 @@ pub mod log;
 pub mod mount;
 pub mod newest;
 pub mod node;
+pub mod panics;
 pub mod process;
 pub mod programs;
 pub mod reader;

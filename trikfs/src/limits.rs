@@ -33,12 +33,23 @@ pub const SETUP_GRACE_MS: u64 = 100;
 pub const SETUP_STUCK_MAX: usize = 8;
 /// Bytes of the output of a program of `setup` that are told.
 pub const SETUP_OUTPUT_BYTES: usize = 512;
-/// Open files at once; the next open gets EMFILE.
+/// Open files at once; the next open gets EMFILE. See `admission` for how many of them may be whose.
 pub const OPEN_FILES_MAX: usize = 65_536;
+/// The open files of everybody may hold this part of the machine's memory: an eighth leaves the rest of a small board to the
+/// programs that drive it.
+pub const OPEN_MEMORY_PART: u64 = 8;
+/// ... but so many bytes in any case: a few hundred converters in Lua.
+pub const OPEN_BYTES_LEAST: usize = 16 << 20;
+/// ... and no more than this on any machine.
+pub const OPEN_BYTES_MOST: usize = 512 << 20;
+/// Bytes that an open file takes without what is behind it.
+pub const OPEN_FILE_BYTES: usize = 1024;
+/// Bytes of memory of the smallest board.
+pub const MACHINE_BYTES_LEAST: u64 = 192 << 20;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
 pub const QUEUE_TUPLES: usize = 256;
 /// Bytes of such tuples, if fewer than [`QUEUE_TUPLES`] take them.
-pub const QUEUE_BYTES: usize = 16 << 20;
+pub const QUEUE_BYTES: usize = 1 << 20;
 /// Bytes read from a source at once.
 pub const READ_BYTES: usize = 128 << 10;
 /// Tuples that one request converts without getting any output before it gives way.
@@ -94,6 +105,11 @@ pub const REST_WAIT_MS: u64 = 1_000;
 pub const LEASE_PRIORITY_MAX: u32 = 100;
 /// Longest time in milliseconds that a dead-man's clock can be set to.
 pub const DEADMAN_MS_MAX: u32 = 60_000;
+/// How long a call on the kernel's device that fails for a reason that may pass is tried again. Callers wait meanwhile, and a
+/// kernel that is short of memory frees some in less.
+pub const KERNEL_PATIENCE: Duration = Duration::from_secs(2);
+/// Longest pause between two of these tries.
+pub const KERNEL_PAUSE_MAX: Duration = Duration::from_millis(32);
 /// Bytes of data in one read or write request of the kernel; a larger one is served in part.
 pub const TRANSFER_BYTES_MAX: usize = 128 << 10;
 /// Requests without a waiting caller (releases, read-ahead) that the kernel may have under way.
@@ -152,12 +168,20 @@ pub const CRASH_WINDOW_SECONDS: u32 = 60;
 pub const GRACE_MS: u32 = 2_000;
 /// Milliseconds that a daemon may be stopped before it is taken for dead.
 pub const STOPPED_MS: u32 = 1_000;
+/// Panics that `status` tells in words.
+pub const PANICS_KEPT: usize = 8;
+/// Characters of each.
+pub const PANIC_WORDS_MAX: usize = 240;
+/// Milliseconds between two looks of the daemon whether its guardian is stopped, while an actuator is driven.
+pub const GUARDIAN_LOOK_MS: u64 = 400;
 /// Milliseconds that bringing all actuators to rest may take.
 pub const REST_MS_MAX: u32 = 3_000;
 /// Rest actions in one ledger.
 pub const REST_ACTIONS_MAX: usize = 4096;
 /// Bytes of all rest actions in one ledger.
 pub const REST_BYTES_MAX: usize = 4 << 20;
+/// Bytes of the list of loaded libraries in one ledger.
+pub const COPIES_BYTES_MAX: usize = 1 << 20;
 /// Node ids with cached values in one ledger.
 pub const CACHED_MAX: usize = 4096;
 /// A mistake that a caller repeats within so many ms is not told again.

@@ -49,6 +49,13 @@ pub fn is_being_killed(thread: u32) -> bool {
     is_ending(thread) && flags(&stat(thread)) & PF_SIGNALED != 0
 }
 
+/// Somebody has stopped the process (SIGSTOP, SIGTSTP). One that a debugger holds is not stopped.
+pub fn is_stopped(process: u32) -> bool {
+    let status = status(process);
+    let state = status.lines().find_map(|line| line.strip_prefix("State:"));
+    state.is_some_and(|state| state.trim_start().starts_with('T'))
+}
+
 /// The process is ending, for whatever reason.
 pub fn is_ending(thread: u32) -> bool {
     has_no_memory(&status(thread))

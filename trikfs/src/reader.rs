@@ -90,6 +90,14 @@ impl Reader {
         matches!(lock(&self.inner).origin, Origin::Shared(_))
     }
 
+    /// Bytes that may wait for this reader while it does not read.
+    pub fn queue_bytes(&self) -> usize {
+        match &lock(&self.inner).origin {
+            Origin::Shared(subscription) => subscription.queue_bytes(),
+            Origin::Own(_) | Origin::Lost => 0,
+        }
+    }
+
     /// Whether nothing has come from the source since it was opened, and nothing is on its way.
     pub fn is_silent(&self, patience: Patience) -> bool {
         let inner = lock(&self.inner);

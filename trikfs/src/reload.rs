@@ -6,6 +6,7 @@
 
 use crate::convert::lua::StateMaker;
 use crate::convert::shared::Cache;
+use crate::convert::shared::copies::{self, Copies, CopyNames};
 use crate::convert::{Recipe, Workshop};
 use crate::engine::Engine;
 use crate::events::lock;
@@ -23,6 +24,7 @@ use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
 use std::io;
 use std::os::unix::fs::MetadataExt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, Weak};
@@ -42,6 +44,8 @@ pub struct Setup {
     pub base_dir: Option<PathBuf>,
     /// Compiled code.
     pub cache: Cache,
+    /// Copies of libraries that were in force before a crash: the first configuration gets them whatever the files contain.
+    pub promised: CopyNames,
     /// Owner of the tree.
     pub owner: Owner,
     /// The last file number that the tree in force has taken.
@@ -66,6 +70,10 @@ struct State {
     next_ino: u64,
     pool: Option<Arc<crate::convert::lua::StatePool>>,
     cached: BTreeSet<u64>,
+    /// For the next configuration.
+    promised: CopyNames,
+    /// Of the libraries in force.
+    copies: CopyNames,
 }
 
 struct Job {
@@ -76,7 +84,7 @@ struct Job {
 
 impl Reloader {
     /// Starts the thread that applies what is written to `config`.
-    pub fn start(setup: Setup) -> io::Result<Arc<Self>> {
+    pub fn start(mut setup: Setup) -> io::Result<Arc<Self>> {
         let (work, jobs) = channel::<Job>();
         std::thread::Builder::new()
             .name("reload".to_owned())
@@ -91,6 +99,8 @@ impl Reloader {
             next_ino: setup.last_ino,
             pool: None,
             cached: BTreeSet::new(),
+            promised: std::mem::take(&mut setup.promised),
+            copies: CopyNames::new(),
         };
         let maker = StateMaker::start()?;
         let root = setup.loader.device_root.clone();
@@ -178,7 +188,15 @@ impl Reloader {
         progress: &dyn Fn(&str),
     ) -> Result<usize, Problem> {
         let _one = lock(&self.one_at_a_time);
-        let outcome = self.try_apply(name, bytes, progress);
+        // Whoever wrote the configuration waits for a verdict, and the next configuration for this thread.
+        let tried = catch_unwind(AssertUnwindSafe(|| self.try_apply(name, bytes, progress)));
+        let outcome = tried.unwrap_or_else(|_| {
+            Err(Problem::new(
+                name,
+                0,
+                "trikfs has a defect and panicked over this configuration; status tells where: please report it",
+            ))
+        });
         match &outcome {
             Ok(count) => {
                 lock(&self.state).result = format!(
@@ -202,8 +220,10 @@ impl Reloader {
         let uses_lua = all(&loaded.config).any(NodeDescription::uses_lua);
         let pool = uses_lua.then(|| self.maker.pool(loaded.program.clone()));
         let before = setup.forest.tree();
+        let copies = Copies::promised(std::mem::take(&mut lock(&self.state).promised));
         let workshop = Workshop {
             cache: &setup.cache,
+            copies: &copies,
             progress,
         };
         let mut builder = Builder {
@@ -245,11 +265,27 @@ impl Reloader {
             }
         }
         let aliases = &loaded.config.aliases;
+        let (copies, remarks) = copies.finish();
+        problems.extend(remarks);
+        self.note_copies(&loaded.config, copies);
         self.put_in_force((nodes, aliases), &before, bytes, pool, &rest);
         for line in problems {
             setup.engine.log.line(&line);
         }
         Ok(loaded.config.nodes.len())
+    }
+
+    /// Keeps which copies are in force: those that were loaded now, and those of nodes that stay as they are.
+    fn note_copies(&self, config: &Config, mut loaded: CopyNames) {
+        let mut state = lock(&self.state);
+        for path in all(config).flat_map(library_paths) {
+            if !loaded.contains_key(path)
+                && let Some(name) = state.copies.remove(path)
+            {
+                loaded.insert(path.to_owned(), name);
+            }
+        }
+        state.copies = loaded;
     }
 
     fn rest_actions(&self, nodes: &[Arc<Node>], problems: &mut Vec<String>) -> Vec<RestAction> {
@@ -327,6 +363,8 @@ impl Reloader {
         }
         if let Some(ledger) = &setup.ledger {
             self.warn_of("the configuration", ledger.set_config(&self.in_force()));
+            let copies = copies::encode(&lock(&self.state).copies);
+            self.warn_of("which libraries are loaded", ledger.set_copies(&copies));
             self.warn_of("what brings the actuators to rest", ledger.set_rest(rest));
         }
     }
@@ -436,14 +474,13 @@ impl Builder<'_> {
         let lease = lease.or_insert_with(|| Lease::new(directory, self.engine));
         let lease = lease.clone();
         let linked = links.iter().map(|(_, node)| node.fingerprint);
-        let fingerprint =
-            linked
-                .chain(libraries(description))
-                .fold(description.fingerprint, |sum, part| {
-                    sum.rotate_left(29)
-                        .wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835)
-                        ^ part
-                });
+        let fingerprint = linked
+            .chain(libraries(description, self.workshop.copies))
+            .fold(description.fingerprint, |sum, part| {
+                sum.rotate_left(29)
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835)
+                    ^ part
+            });
         if let Some(&old) = self.before.get(path)
             && old.fingerprint == fingerprint
             && old.is_attribute == is_attribute
@@ -491,16 +528,25 @@ fn leased_directory<'a>(
     directory
 }
 
-/// What tells one version of a library file from another: a replaced library is a changed description.
-fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
+/// The files of the libraries that a node converts with.
+fn library_paths(description: &NodeDescription) -> impl Iterator<Item = &PathBuf> {
     let both = description
         .converter
         .iter()
         .chain(description.write_converter.iter().flatten());
-    both.filter_map(|stage| {
-        let StageKind::Library { path, .. } = &stage.kind else {
-            return None;
-        };
+    both.filter_map(|stage| match &stage.kind {
+        StageKind::Library { path, .. } => Some(path),
+        StageKind::Lua | StageKind::InlineC { .. } => None,
+    })
+}
+
+/// What tells one version of a library file from another: a replaced library is a changed description. One whose former
+/// copy is loaded is like no file, so the next configuration looks at the file itself.
+fn libraries(description: &NodeDescription, copies: &Copies) -> impl Iterator<Item = u128> {
+    library_paths(description).filter_map(|path| {
+        if copies.is_promised(path) {
+            return Some(u128::MAX);
+        }
         let meta = std::fs::metadata(path).ok()?;
         let modified = meta
             .modified()
@@ -511,3 +557,6 @@ fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
         Some(modified ^ u128::from(meta.len()) << 64 ^ u128::from(meta.ino()) << 96)
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,6 +9,7 @@ pub mod timing;
 
 use crate::check::{self, SearchPaths};
 use crate::convert::lua::{StateMaker, StatePool};
+use crate::convert::shared::copies::Copies;
 use crate::convert::{LogSink, Pipeline, Recipe, Workshop};
 use crate::errno::Error;
 use crate::failure::Failure;
@@ -66,6 +67,7 @@ impl Subject {
             .extend(params.iter().map(|(name, value)| (name.clone(), *value)));
         let workshop = Workshop {
             cache: &paths.cache,
+            copies: &Copies::default(),
             progress: &|_| {},
         };
         let maker = StateMaker::start();

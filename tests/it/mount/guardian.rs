@@ -75,6 +75,25 @@ fn a_daemon_that_is_stopped_for_a_moment_goes_on() {
 }
 
 #[test]
+fn while_its_guardian_is_stopped_the_daemon_lets_actuators_rest_and_has_it_go_on() {
+    let Some(m) = robot() else { return };
+    for _ in 0..2 {
+        m.sh("echo 100 1 > motor/value");
+        assert_eq!(m.board().content("motor"), [100, 1]);
+        processes::signal(m.guardian(), Signal::SIGSTOP);
+        eventually("rest", || m.board().content("motor") == [0, 7]);
+        eventually("the guardian", || !processes::is_stopped(m.guardian()));
+    }
+    assert!(m.log().contains(&format!(
+        "the guardian (process {}) was stopped: actuators were brought to rest, and it was told to go on",
+        m.guardian()
+    )));
+    let daemon = m.daemon();
+    processes::signal(daemon, Signal::SIGKILL);
+    comes_back(&m, daemon);
+}
+
+#[test]
 fn a_cached_value_of_a_dead_daemon_is_not_served() {
     let Some(m) = robot() else { return };
     let open = m.open("gyro/bin_data");
@@ -210,4 +229,50 @@ int converter(int in_s, char *in, int out_s, char *out) { exit(0); }
         "{}",
         m.complaints()
     );
+}
+
+#[test]
+fn after_a_crash_the_library_in_force_is_loaded_whatever_its_file_contains() {
+    let board = Board::new();
+    let plus = |number: u32| {
+        format!(
+            "int converter(int in_s, char *in, int out_s, char *out)
+{{ out[0] = in[0] + {number}; return in_s != out_s; }}"
+        )
+    };
+    board.library("plus.so", &plus(1));
+    board.file("in", [5]);
+    let config = "trikfs = { n = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1, converter = 'plus.so' } }";
+    let Some(m) = mount_on(board, config) else {
+        return;
+    };
+    assert_eq!(m.read("n/bin_data").unwrap(), [6]);
+    let crash = || {
+        let daemon = m.daemon();
+        processes::signal(daemon, Signal::SIGKILL);
+        eventually("another daemon", || {
+            processes::children(m.guardian())
+                .iter()
+                .any(|&pid| pid != daemon)
+        });
+        eventually("the tree", || m.read("n/bin_data").is_ok());
+    };
+    // Twice, because the second life must promise the same.
+    for rubbish in [&b"no library"[..], b""] {
+        m.board().file("plus.so", rubbish);
+        crash();
+        assert_eq!(m.read("n/bin_data").unwrap(), [6]);
+        let log = m.log();
+        let told = "plus.so is not what it was: the copy that was in force is used until the next configuration";
+        assert!(log.contains(told), "{log}");
+    }
+    // Whoever asks for the configuration anew hears what the file is now, and then has what it is.
+    let line = m.apply(config).unwrap_err();
+    assert!(line.contains("plus.so"), "{line}");
+    assert_eq!(m.read("n/bin_data").unwrap(), [6]);
+    m.board().library("plus.so", &plus(2));
+    m.apply(config).unwrap();
+    assert_eq!(m.read("n/bin_data").unwrap(), [7]);
+    crash();
+    assert_eq!(m.read("n/bin_data").unwrap(), [7]);
 }

@@ -1,6 +1,6 @@
 //! Large tuples, many nodes, many open files at once, and memory that does not grow.
 
-use crate::{mount, mount_on};
+use crate::{mount, mount_on, mount_with};
 use harness::Board;
 
 #[test]
@@ -92,4 +92,82 @@ fn reloading_does_not_make_the_daemon_grow() {
     reload(300);
     let after = harness::processes::resident_bytes(m.daemon()).unwrap();
     assert!(after < before + (6 << 20), "{before} bytes became {after}");
+}
+
+/// Programs of nobody that open a file until it is refused, and keep what they have until they hear from their parent. A
+/// process may have few files open, so there are several.
+const GREEDY: &str = "
+resource.setrlimit(resource.RLIMIT_NOFILE, (4096, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+def greedy(path):
+    number, count = 0, 0
+    heard, go = os.pipe()
+    while number == 0:
+        told, tell = os.pipe()
+        if os.fork() == 0:
+            os.close(go), os.setgroups([]), os.setgid(65534), os.setuid(65534)
+            files = []
+            while number == 0 and len(files) < 4000:
+                try:
+                    files.append(os.open(path, os.O_RDONLY))
+                except OSError as error:
+                    number = error.errno
+            os.write(tell, b'%d %d' % (number, len(files)))
+            os.read(heard, 1)
+            os._exit(0)
+        number, more = map(int, os.read(told, 100).split())
+        count += more
+    return number, count, lambda: os.close(go)
+";
+
+#[test]
+fn a_user_who_only_reads_takes_a_part_of_the_memory_and_gives_it_back() {
+    let config = "local big = {} for i = 1, 20000 do big[i] = i end
+      trikfs = { n = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1,
+        converter = function(a_s, a, b_s, b) ba.set(b, 0, big[ba.get(a, 0) + 1]) end } }";
+    let Some(m) = mount_with(Board::new(), config, &["--allow-other"]) else {
+        return;
+    };
+    let daemon = m.daemon();
+    m.python(&format!(
+        "{GREEDY}
+def resident():
+    return int(open('/proc/{daemon}/statm').read().split()[1]) * resource.getpagesize()
+assert os.read(open_ro(M + '/n/device'), 1) == b'\\1'
+before = resident()
+number, count, end = greedy('n/device')
+assert number == errno.ENOMEM, number
+assert count >= 10, count
+# A quarter of at most 512 MiB, and what the allocator adds.
+assert resident() - before < 192 << 20, (before, resident())
+assert os.read(open_ro(M + '/n/device'), 1) == b'\\1'
+end()
+eventually(lambda: resident() < before * 1.1 + (4 << 20), 'the memory of closed files')
+"
+    ));
+    let log = m.log();
+    assert!(
+        log.contains("open: too much memory: the open files of user 65534 may hold "),
+        "{log}"
+    );
+}
+
+#[test]
+fn a_user_who_only_reads_takes_a_part_of_the_files() {
+    let config = "trikfs = { n = { src = '/dev/zero', input_tuple_size = 1 } }";
+    let Some(m) = mount_with(Board::new(), config, &["--allow-other"]) else {
+        return;
+    };
+    m.python(&format!(
+        "{GREEDY}
+number, count, end = greedy('status')
+assert (number, count) == (errno.EMFILE, 16384), (number, count)
+assert text(M + '/n/value') == '0\\n'
+end()
+"
+    ));
+    let log = m.log();
+    assert!(
+        log.contains("open: too many open files: user 65534 may have 16384 files open: close some"),
+        "{log}"
+    );
 }

@@ -5,6 +5,7 @@
 //! `daemon` do the work.
 
 use super::{MountArgs, ServeArgs, absolute, notify};
+use crate::convert::shared::copies;
 use crate::daemon::{self, Options};
 use crate::failure::Failure;
 use crate::guardian::inherit::{Farewell, Inheritance};
@@ -176,15 +177,15 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
     let lifeline = inheritance.lifeline.share().map_err(fail)?;
     let paths = args.tree.search.paths()?;
     let detached = args.detached;
+    let again = args.handover.again;
     let result = daemon::run(Options {
         device: inheritance.device,
         mountpoint: args.mountpoint,
         config: args.tree.config,
-        in_force: args
-            .handover
-            .again
-            .then(|| inheritance.ledger.config())
-            .flatten(),
+        in_force: again.then(|| inheritance.ledger.config()).flatten(),
+        promised: again
+            .then(|| copies::decode(&inheritance.ledger.copies()))
+            .unwrap_or_default(),
         include_dirs: paths.include_dirs,
         library_dirs: paths.library_dirs,
         device_root: paths.device_root,
@@ -210,7 +211,10 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
         }),
         progress: Box::new(super::progress),
     });
-    inheritance.lifeline.over();
+    // After a failure in the middle the guardian shall start another daemon.
+    if result.is_ok() {
+        inheritance.lifeline.over();
+    }
     farewell.say();
     drop(inheritance.lifeline);
     result

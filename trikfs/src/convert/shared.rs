@@ -12,6 +12,7 @@
 //! another directory, so a library must not look for others beside itself (`$ORIGIN`).
 
 mod cache;
+pub mod copies;
 mod elf;
 mod refusal;
 
@@ -63,30 +64,44 @@ impl Library {
     /// # Errors
     /// What is wrong, with the path and, for a name that is not there, all that are.
     pub fn load(path: &Path, name: Option<&str>, cache: &Cache) -> Result<Self, LibraryError> {
-        let inline = cache.holds(path);
-        let shown = if inline {
-            "inline C".to_owned()
-        } else {
-            path.display().to_string()
-        };
-        let short = match path.file_name() {
-            Some(file) if !inline => file.to_string_lossy().into_owned(),
-            _ => shown.clone(),
-        };
-        let loadable = if inline {
-            path.to_owned()
-        } else {
-            copy(path, cache)?
-        };
-        let descriptor = open_library(&loadable, &shown)
+        if cache.holds(path) {
+            return Self::load_copy(path, "inline C", "inline C", name);
+        }
+        Self::load_copy_of(path, &copy(path, cache)?, name)
+    }
+
+    /// As [`load`](Self::load), from a copy of the library at `path` that is in the cache already.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_copy_of(
+        path: &Path,
+        copy: &Path,
+        name: Option<&str>,
+    ) -> Result<Self, LibraryError> {
+        let shown = path.display().to_string();
+        let short = path
+            .file_name()
+            .map(|file| file.to_string_lossy().into_owned());
+        Self::load_copy(copy, &shown, short.as_deref().unwrap_or(&shown), name)
+    }
+
+    /// From a file of the cache, which the user knows as `shown`, or as `short` in front of a message.
+    fn load_copy(
+        file: &Path,
+        shown: &str,
+        short: &str,
+        name: Option<&str>,
+    ) -> Result<Self, LibraryError> {
+        let descriptor = open_library(file, shown)
             .and_then(|descriptors| choose(descriptors, name))
             .map_err(|why| LibraryError::Library {
-                shown: shown.clone(),
+                shown: shown.to_owned(),
                 why,
             })?;
         let label = match name {
             Some(name) => format!("{short}#{name}"),
-            None => short,
+            None => short.to_owned(),
         };
         Ok(Self {
             descriptor: Arc::new(descriptor),
@@ -220,7 +235,12 @@ fn copy(path: &Path, cache: &Cache) -> Result<PathBuf, LibraryError> {
         .read_to_end(&mut bytes)
         .map_err(fail)?;
     elf::check(&bytes).map_err(|why| wrong(Wrong::Elf(why)))?;
-    Ok(cache.put(&format!("lib-{}.so", Hash::of(&bytes).hex()), &bytes)?)
+    Ok(cache.put(&copy_name(&bytes), &bytes)?)
+}
+
+/// The name of the copy of a library with these contents.
+fn copy_name(contents: &[u8]) -> String {
+    format!("lib-{}.so", Hash::of(contents).hex())
 }
 
 /// Loads a library for ever and reads what it holds; the user knows it as `shown`.

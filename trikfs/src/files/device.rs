@@ -28,6 +28,8 @@ pub struct DeviceFile {
     ownership: Ownership,
     waiting: Mutex<Waiting>,
     poll: OnceLock<PollHandle>,
+    /// Of its converters, when it was opened.
+    pipeline_bytes: usize,
 }
 
 type Source = ByDelivery<Box<Mutex<StateReader>>, Arc<Reader>>;
@@ -43,6 +45,7 @@ impl DeviceFile {
     pub fn open(node: &Arc<Node>, read: bool, write: bool) -> Result<(Arc<Self>, Access), Error> {
         node.check_access(read, write)?;
         let pipeline = node.open_pipeline()?;
+        let pipeline_bytes = lock(&pipeline).memory();
         let file = Arc::new(Self {
             node: node.clone(),
             engine: node.engine.clone(),
@@ -51,6 +54,7 @@ impl DeviceFile {
             ownership: Ownership::default(),
             waiting: Mutex::default(),
             poll: OnceLock::new(),
+            pipeline_bytes,
         });
         let mut access = Access::Stream;
         if read {
@@ -194,6 +198,14 @@ impl OpenFile for DeviceFile {
             return Ok((events & now) | libc::POLLERR as u32);
         }
         Ok(events & now)
+    }
+
+    fn held_bytes(&self) -> usize {
+        let queue = match self.source.get() {
+            Some(Source::Stream(reader)) => reader.queue_bytes(),
+            Some(Source::State(_)) | None => 0,
+        };
+        self.pipeline_bytes + queue
     }
 
     fn flush(&self, _id: RequestId, caller: Caller) -> Result<Outcome, Error> {

@@ -46,6 +46,10 @@ impl Drop for Admission<'_> {
 impl Ownership {
     /// Asks every lease that a write to the node touches. Keep the result until the device has the bytes.
     pub fn admit<'a>(&self, node: &'a Node, caller: Caller) -> Result<Admission<'a>, Error> {
+        if node.description.rest.is_some() && !node.driving.is_driven() {
+            node.driving.set_driven(true);
+            node.engine.driven();
+        }
         let mut admission = Admission {
             leases: &node.driving.leases,
             generations: Vec::with_capacity(node.driving.leases.len()),

@@ -1,7 +1,7 @@
 //! What the guardian has to know when the daemon is dead: a file in memory that both hold.
 //!
 //! The daemon writes, and may be killed in the middle; the guardian reads, and believes nothing that does not check.
-//! Owns the layout, which never leaves the machine: three sections (configuration, rest, cached), each with two
+//! Owns the layout, which never leaves the machine: four sections (configuration, rest, cached, copies), each with two
 //! slots that are written in turn. A slot is a header and its payload; the valid slot with the later sequence
 //! number counts. A write that is cut short leaves the other slot as it was.
 //!
@@ -9,6 +9,7 @@
 //! slot:    magic u32 | section u32 | sequence u32 | length u32 | checksum u128 | payload
 //! rest:    { action }, see `actions`
 //! cached:  { node id u64 }
+//! copies:  which libraries are loaded, see `convert/shared/copies`
 //! ```
 //! All numbers are little endian. The checksum covers the payload and the three numbers before the length.
 
@@ -40,10 +41,11 @@ enum Section {
     Config,
     Rest,
     Cached,
+    Copies,
 }
 
 impl Section {
-    const ALL: [Self; 3] = [Self::Config, Self::Rest, Self::Cached];
+    const ALL: [Self; 4] = [Self::Config, Self::Rest, Self::Cached, Self::Copies];
 
     /// Largest payload.
     fn capacity(self) -> usize {
@@ -51,6 +53,7 @@ impl Section {
             Self::Config => config::limits::CONFIG_BYTES_MAX,
             Self::Rest => limits::REST_BYTES_MAX,
             Self::Cached => limits::CACHED_MAX * 8,
+            Self::Copies => limits::COPIES_BYTES_MAX,
         }
     }
 
@@ -113,6 +116,16 @@ impl Ledger {
     pub fn set_cached(&self, inos: &[u64]) -> io::Result<()> {
         let bytes: Vec<u8> = inos.iter().flat_map(|ino| ino.to_le_bytes()).collect();
         self.write(Section::Cached, &bytes)
+    }
+
+    /// Records which copies of libraries are loaded, in bytes that this file does not read; at most 1 MiB.
+    pub fn set_copies(&self, bytes: &[u8]) -> io::Result<()> {
+        self.write(Section::Copies, bytes)
+    }
+
+    /// What [`set_copies`](Self::set_copies) recorded last; nothing if that was nothing readable.
+    pub fn copies(&self) -> Vec<u8> {
+        self.read(Section::Copies).unwrap_or_default()
     }
 
     /// The configuration in force, if one was recorded.

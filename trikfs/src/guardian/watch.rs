@@ -136,6 +136,11 @@ impl Watch {
         ];
         match poll(&mut watched, timeout) {
             Err(Errno::EINTR) => Ok([false; 3]),
+            // Without memory the kernel cannot even wait. A guardian that gave up now would take the tree with it.
+            Err(Errno::ENOMEM | Errno::EAGAIN) => {
+                std::thread::sleep(limits::KERNEL_PAUSE_MAX);
+                Ok([false; 3])
+            }
             Err(error) => Err(error.into()),
             Ok(_) => Ok(watched.map(|fd| fd.any().unwrap_or(true))),
         }

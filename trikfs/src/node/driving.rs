@@ -31,6 +31,8 @@ pub struct Driving {
     turn: Mutex<()>,
     /// Why a regulator that drove this node gave up.
     lost: Mutex<Option<Error>>,
+    /// A program was let in since the actuator came to rest.
+    is_driven: AtomicBool,
     /// How often a tuple went to the device. Wraps.
     writes: AtomicU32,
     /// What was written last.
@@ -66,10 +68,21 @@ impl Driving {
             is_regulated: AtomicBool::new(false),
             turn: Mutex::default(),
             lost: Mutex::default(),
+            is_driven: AtomicBool::new(false),
             writes: AtomicU32::new(0),
             written: Written::new(description.read_back),
             ring: Mutex::default(),
         }
+    }
+
+    /// Whether the actuator may be anything but at rest.
+    pub fn is_driven(&self) -> bool {
+        self.is_driven.load(Ordering::SeqCst)
+    }
+
+    /// A program is let in, or the actuator has come to rest.
+    pub fn set_driven(&self, is_driven: bool) {
+        self.is_driven.store(is_driven, Ordering::SeqCst);
     }
 
     /// What is written is an order to a regulator, which holds it by driving another node; no sink takes it.

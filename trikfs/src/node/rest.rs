@@ -136,9 +136,12 @@ pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
     }
     let work = || {
         while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if let Err(error) = node.rest() {
-                node.report(&error);
-                lock(&failures).push(error);
+            match node.rest() {
+                Ok(()) => node.driving.set_driven(false),
+                Err(error) => {
+                    node.report(&error);
+                    lock(&failures).push(error);
+                }
             }
         }
     };

@@ -38,7 +38,7 @@ use crate::limits::{MAX_THREADS, TRANSFER_BYTES_MAX};
 use crate::transport::null::NullFs;
 use crate::transport::{Kernel, Operations, RequestId};
 use decode::{Body, Header, KernelInit, Malformed, Request};
-use link::{Link, report};
+use link::{Delivery, Link, report};
 use negotiate::{Negotiated, negotiate};
 use nix::errno::Errno;
 use perform::{Performed, perform};
@@ -130,9 +130,13 @@ impl Slot {
 impl Session {
     /// A session on an open /dev/fuse that has been mounted. Nothing is read before [`serve`](Self::serve).
     pub fn new(device: OwnedFd, operations: Arc<dyn Operations>, options: SessionOptions) -> Self {
+        Self::over(Link::new(device), operations, options)
+    }
+
+    fn over(link: Link, operations: Arc<dyn Operations>, options: SessionOptions) -> Self {
         Self {
             shared: Arc::new(Shared {
-                link: Arc::new(Link::new(device)),
+                link: Arc::new(link),
                 operations,
                 options,
                 features: OnceLock::new(),
@@ -152,7 +156,8 @@ impl Session {
     /// (/sys/fs/fuse/connections). After a lazy unmount of a busy mount, `stop` ends it.
     ///
     /// # Errors
-    /// If the device cannot be read, or the kernel is too old (before 4.14).
+    /// If the device cannot be read for longer than [`KERNEL_PATIENCE`](crate::limits::KERNEL_PATIENCE), or the kernel is too
+    /// old (before 4.14).
     pub fn serve(&self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let crew = Crew::run_each("fuse", MAX_THREADS, Urgency::Awaited, move || {
@@ -426,11 +431,10 @@ fn serve_operation(
         Performed::Wait | Performed::Silent => return,
     };
     head.copy_from_slice(&encode::answer_header(header.unique, errno, bytes));
-    let sent = shared.link.send(&reply[..abi::OUT_HEADER + bytes]);
-    if sent.is_err() {
+    let message = &reply[..abi::OUT_HEADER + bytes];
+    if shared.link.answer(header.unique, message) != Delivery::Whole {
         undo(shared, header, performed);
     }
-    report("an answer", sent);
 }
 
 /// The caller did not get the answer: it was interrupted, or it is gone.

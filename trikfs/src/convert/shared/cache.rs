@@ -195,7 +195,7 @@ fn refuse_unless_private(dir: &Path, found: &Metadata, user: u32) -> Result<(), 
 }
 
 /// True for the names that this program gives to libraries: only those are ever removed.
-fn is_ours(name: &str) -> bool {
+pub(super) fn is_ours(name: &str) -> bool {
     let digits = name
         .strip_prefix("lib-")
         .or_else(|| name.strip_prefix("c-"))

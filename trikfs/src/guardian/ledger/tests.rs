@@ -28,6 +28,9 @@ fn what_one_holder_records_the_other_reads() {
     ledger.set_config(b"trikfs = {}").expect("config");
     ledger.set_rest(&rest).expect("rest");
     ledger.set_cached(&[7, u64::MAX]).expect("cached");
+    assert_eq!(other.copies(), b"");
+    ledger.set_copies(b"a\0b").expect("copies");
+    assert_eq!(other.copies(), b"a\0b");
     assert_eq!(other.config().as_deref(), Some(&b"trikfs = {}"[..]));
     assert_eq!(other.rest(), rest);
     assert_eq!(other.cached(), [7, u64::MAX]);
@@ -121,7 +124,7 @@ fn garbage_is_never_taken_for_a_value() {
         ledger.set_rest(&rest).expect("rest");
         ledger.set_cached(&[9, 8]).expect("cached");
         for _ in 0..=random.below(40) {
-            let section = Section::ALL[random.below(3)];
+            let section = Section::ALL[random.below(Section::ALL.len())];
             let offset = section.offset(random.below(2)) + random.below(60) as u64;
             ledger
                 .file

@@ -3,6 +3,7 @@
 pub(crate) mod bodies;
 pub(crate) mod rig;
 
+mod failing;
 mod only_native;
 
 use super::*;

@@ -1,6 +1,7 @@
 //! A filesystem made for the tests of the transports, and its mount.
 
 use crate::errno::Error;
+use crate::guardian::mounted::Mounted;
 use crate::mount::{MountOptions, mount, unmount};
 use crate::transport::null::NullFs;
 use crate::transport::{
@@ -389,6 +390,11 @@ impl Rig {
     /// Takes the name away; the filesystem goes on while somebody has files open.
     pub(crate) fn unmount(&self) -> crate::mount::Unmounted {
         unmount(&self.path).unwrap()
+    }
+
+    /// Cuts the connection off, as the guardian does when the daemon is dead: whoever waits is told.
+    pub(crate) fn abort(&self) {
+        Mounted::find(&self.path).unwrap().abort();
     }
 
     /// Waits for the end of serving, which somebody else has brought about.
