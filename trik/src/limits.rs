@@ -102,6 +102,8 @@ pub const SANDBOX_FOLDERS: usize = 500;
 pub const PYTHON_PATHS: usize = 64;
 /// Bytes of what it says of that.
 pub const PYTHON_PATHS_BYTES: u64 = 64 << 10;
+/// How long Python may take to say that, and the steps of its sandbox to say what is missing.
+pub const PYTHON_ANSWER_MS: u32 = 10_000;
 /// Remarks about a judged program that are kept.
 pub const SCRIPT_REMARKS: usize = 20;
 /// Threads of a judged program whose lines are kept.

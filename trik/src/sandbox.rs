@@ -18,17 +18,21 @@ mod words;
 use crate::error::Error;
 use crate::limits;
 use frame::encode;
-pub(crate) use group::delegated;
+pub(crate) use group::{delegated, sweep};
 pub(crate) use layer::Layer;
 pub(crate) use layer::named;
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
 use order::{Order, Step};
 use std::ffi::OsString;
 use std::io::{self, Read, Write};
 use std::os::unix::ffi::OsStringExt;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
-use std::time::Duration;
+use std::process::{Command, ExitCode, Output, Stdio};
+use std::sync::mpsc::sync_channel;
+use std::thread;
+use std::time::{Duration, Instant};
 pub(crate) use words::{lacks, required};
 
 /// The name under which this program is such a step.
@@ -130,8 +134,7 @@ impl Sandbox {
             .collect();
         order.is_probe = true;
         let mut probe = step(&order);
-        let probe = probe.stdin(Stdio::null()).stderr(Stdio::piped());
-        let output = probe.output().map_err(failed)?;
+        let output = answer(probe.stderr(Stdio::piped())).map_err(failed)?;
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
             return Err(Error::system("sandbox", said.trim()));
@@ -181,6 +184,44 @@ fn clear(command: &mut Command) {
     ]);
 }
 
+/// What a process says until its end, which is forced if it does not come; it may be a wrapper that hangs.
+fn answer(command: &mut Command) -> io::Result<Output> {
+    let until = Instant::now() + Duration::from_millis(limits::PYTHON_ANSWER_MS.into());
+    let command = command.stdin(Stdio::null()).stdout(Stdio::piped());
+    let mut child = command.process_group(0).spawn()?;
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let (send, said) = sync_channel(1);
+    thread::spawn(move || {
+        let most = limits::PYTHON_PATHS_BYTES;
+        let (mut out, mut err) = (Vec::new(), Vec::new());
+        let read = stdout.map_or(Ok(0), |pipe| pipe.take(most).read_to_end(&mut out));
+        let read = read.and(stderr.map_or(Ok(0), |pipe| pipe.take(most).read_to_end(&mut err)));
+        // Nobody hears it who has not waited.
+        let _ = send.send(read.map(|_| (out, err)));
+    });
+    let left = until.saturating_duration_since(Instant::now());
+    if let Ok(said) = said.recv_timeout(left) {
+        let (stdout, stderr) = said?;
+        while Instant::now() < until {
+            if let Some(status) = child.try_wait()? {
+                return Ok(Output {
+                    status,
+                    stdout,
+                    stderr,
+                });
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+    if let Ok(group) = i32::try_from(child.id()) {
+        let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
+    }
+    child.wait()?;
+    let seconds = limits::PYTHON_ANSWER_MS / 1000;
+    let told = format!("python3 does not answer in {seconds} s");
+    Err(io::Error::new(io::ErrorKind::TimedOut, told))
+}
+
 /// The interpreter that the path has, and after it the folders that it reads.
 ///
 /// # Errors
@@ -188,18 +229,7 @@ fn clear(command: &mut Command) {
 pub(crate) fn python() -> io::Result<Vec<PathBuf>> {
     let mut command = Command::new("python3");
     clear(command.args(["-s", "-B", "-c", WHERE]));
-    let mut child = command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()?;
-    let mut said = Vec::new();
-    if let Some(output) = child.stdout.take() {
-        output
-            .take(limits::PYTHON_PATHS_BYTES)
-            .read_to_end(&mut said)?;
-    }
-    child.wait()?;
+    let said = answer(command.stderr(Stdio::null()))?.stdout;
     let mut paths: Vec<PathBuf> = Vec::new();
     for path in said
         .split(|byte| *byte == 0)

@@ -11,6 +11,7 @@ use super::{words, worker};
 use crate::error::Error;
 use crate::limits;
 use crate::refusal::Refusal;
+use crate::sandbox;
 use sim::judge;
 use std::ffi::OsString;
 use std::fs::File;
@@ -83,7 +84,7 @@ pub(super) fn run(
         .clamp(1, jobs.len().max(1));
     let shared = Shared::default();
     let (send, results) = sync_channel::<(usize, Row)>(crew * 2);
-    thread::scope(|scope| {
+    let done = thread::scope(|scope| {
         for _ in 0..crew {
             let (send, shared) = (send.clone(), &shared);
             scope.spawn(move || feed(jobs, args, shared, &send));
@@ -95,7 +96,12 @@ pub(super) fn run(
         // A thread that waits for room is let go.
         drop(results);
         done
-    })
+    });
+    // A process that was killed has removed no group of its program.
+    if let Some(group) = &args.sandbox.group {
+        sandbox::sweep(group);
+    }
+    done
 }
 
 /// Does one run, whose outputs are files, in a process.

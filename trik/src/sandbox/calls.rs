@@ -1,7 +1,8 @@
 //! Which system calls a judged program may not make: a filter of seccomp (Linux 3.5).
 //!
 //! Owns the list. It names what looks into others, what changes the computer, what makes memory that no limit counts,
-//! and what is new and large in kernels; all else is left to files, users and namespaces.
+//! what changes of files Landlock does not know, and what is new and large in kernels; all else is left to files, users
+//! and namespaces.
 
 use libc::c_long;
 use seccompiler::{
@@ -74,7 +75,34 @@ const DENIED: &[c_long] = &[
     libc::SYS_shmget,
     libc::SYS_msgget,
     libc::SYS_semget,
+    libc::SYS_mq_open,
+    // What of files Landlock does not hold: rights, owners, times and notes of each file whose owner the program is, and
+    // before Linux 6.2 how long a file is.
+    libc::SYS_truncate,
+    libc::SYS_fchmod,
+    libc::SYS_fchmodat,
+    FCHMODAT2,
+    libc::SYS_fchown,
+    libc::SYS_fchownat,
+    libc::SYS_utimensat,
+    libc::SYS_setxattr,
+    libc::SYS_lsetxattr,
+    libc::SYS_fsetxattr,
+    SETXATTRAT,
+    libc::SYS_removexattr,
+    libc::SYS_lremovexattr,
+    libc::SYS_fremovexattr,
+    REMOVEXATTRAT,
+    FILE_SETATTR,
 ];
+/// Numbers that are the same on each processor, and that the crate has not for all of them.
+const FCHMODAT2: c_long = 452;
+/// See [`FCHMODAT2`].
+const SETXATTRAT: c_long = 463;
+/// See [`FCHMODAT2`].
+const REMOVEXATTRAT: c_long = 466;
+/// See [`FCHMODAT2`].
+const FILE_SETATTR: c_long = 469;
 /// More of them, where the processor has them.
 #[cfg(target_arch = "x86_64")]
 const DENIED_HERE: &[c_long] = &[
@@ -82,6 +110,13 @@ const DENIED_HERE: &[c_long] = &[
     libc::SYS_iopl,
     libc::SYS_ioperm,
     libc::SYS_modify_ldt,
+    // Older names of what changes files.
+    libc::SYS_chmod,
+    libc::SYS_chown,
+    libc::SYS_lchown,
+    libc::SYS_utime,
+    libc::SYS_utimes,
+    libc::SYS_futimesat,
 ];
 #[cfg(not(target_arch = "x86_64"))]
 const DENIED_HERE: &[c_long] = &[];
@@ -100,6 +135,8 @@ const NAMESPACES: [i32; 7] = [
     libc::CLONE_NEWPID,
     libc::CLONE_NEWNET,
 ];
+/// Which bits of the kind of a socket say what it is (linux/net.h).
+const KINDS: u64 = 0xf;
 /// Numbers from here on are calls of another kind of program on the same processor (x32), with lists of their own.
 const OTHER_CALLS: u32 = 0x4000_0000;
 /// Instructions of a filter (linux/bpf_common.h): load a word, jump if it is at least so great, give an answer.
@@ -173,14 +210,84 @@ fn rules(is_alone: bool) -> Result<BTreeMap<i64, Vec<SeccompRule>>, BackendError
         rules.extend(FORKS.iter().map(|call| (*call, Vec::new())));
     }
     rules.insert(libc::SYS_clone, clone);
-    // Pairs of sockets go nowhere, if they are of this kind.
+    // Pairs of streams go nowhere; with one of another kind each socket of the computer that has a path could be told
+    // something.
     let local = u64::from(libc::AF_UNIX.cast_unsigned());
-    rules.insert(
-        libc::SYS_socketpair,
-        vec![when(0, SeccompCmpOp::Ne, local)?],
-    );
+    let stream = u64::from(libc::SOCK_STREAM.cast_unsigned());
+    let mut pairs = vec![when(0, SeccompCmpOp::Ne, local)?];
+    for kind in (0..=KINDS).filter(|kind| *kind != stream) {
+        pairs.push(when(1, SeccompCmpOp::MaskedEq(KINDS), kind)?);
+    }
+    rules.insert(libc::SYS_socketpair, pairs);
     // Who dies with the judge goes on doing so.
     let death = u64::from(libc::PR_SET_PDEATHSIG.cast_unsigned());
     rules.insert(libc::SYS_prctl, vec![when(0, SeccompCmpOp::Eq, death)?]);
     Ok(rules)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Most of these fail for who is nobody without any filter too, so no program can find out that they are filtered.
+    #[test]
+    fn each_call_that_is_named_has_a_rule() {
+        let whole = rules(false).unwrap();
+        let always = [
+            libc::SYS_mount,
+            libc::SYS_umount2,
+            libc::SYS_pivot_root,
+            libc::SYS_chroot,
+            libc::SYS_unshare,
+            libc::SYS_setns,
+            libc::SYS_socket,
+            libc::SYS_bpf,
+            libc::SYS_perf_event_open,
+            libc::SYS_keyctl,
+            libc::SYS_userfaultfd,
+            libc::SYS_io_uring_setup,
+            libc::SYS_kexec_load,
+            libc::SYS_ptrace,
+            libc::SYS_process_vm_readv,
+            libc::SYS_process_vm_writev,
+            libc::SYS_pidfd_getfd,
+            libc::SYS_memfd_create,
+            libc::SYS_shmget,
+            libc::SYS_mq_open,
+            libc::SYS_truncate,
+            libc::SYS_fchmod,
+            libc::SYS_fchmodat,
+            452,
+            libc::SYS_fchown,
+            libc::SYS_fchownat,
+            libc::SYS_utimensat,
+            libc::SYS_setxattr,
+            libc::SYS_lsetxattr,
+            libc::SYS_fsetxattr,
+            libc::SYS_removexattr,
+            libc::SYS_lremovexattr,
+            libc::SYS_fremovexattr,
+        ];
+        for call in always {
+            // Without a condition: always.
+            assert!(whole.get(&call).is_some_and(Vec::is_empty), "{call}");
+        }
+        for call in [libc::SYS_clone, libc::SYS_socketpair, libc::SYS_prctl] {
+            assert!(!whole[&call].is_empty(), "{call}");
+        }
+        #[cfg(target_arch = "x86_64")]
+        for call in [
+            libc::SYS_chmod,
+            libc::SYS_chown,
+            libc::SYS_lchown,
+            libc::SYS_utime,
+            libc::SYS_utimes,
+            libc::SYS_futimesat,
+        ] {
+            assert!(whole.get(&call).is_some_and(Vec::is_empty), "{call}");
+        }
+        let alone = rules(true).unwrap();
+        assert_eq!(alone[&libc::SYS_clone].len(), NAMESPACES.len() + 1);
+        assert!(FORKS.iter().all(|call| alone.contains_key(call)));
+    }
 }

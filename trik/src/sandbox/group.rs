@@ -15,6 +15,10 @@ const MOUNTS: [&str; 2] = ["/sys/fs/cgroup", "/sys/fs/cgroup/unified"];
 /// The line of `/proc/self/cgroup` that has it.
 const LINE: &str = "0::/";
 const PROCESSES: &str = "cgroup.procs";
+/// What the name of the group of a program begins with, before the number of the process that starts it.
+const PROGRAM: &str = "trik-";
+/// The same of the group of a judge.
+const JUDGE: &str = "trik-judge-";
 const CONTROLLERS: [&str; 2] = ["memory", "pids"];
 
 /// The group of this process, if groups with limits can be made below it. Only a group without processes of its own has
@@ -24,7 +28,9 @@ pub(crate) fn delegated() -> Option<PathBuf> {
     let place = own.lines().find_map(|line| line.strip_prefix(LINE))?;
     let bases = MOUNTS.iter().map(|mount| Path::new(mount).join(place));
     let base = bases.into_iter().find(|base| has_controllers(base))?;
-    let leaf = base.join(format!("trik-judge-{}", std::process::id()));
+    // What a judge has left who was killed.
+    sweep_once(&base);
+    let leaf = base.join(format!("{JUDGE}{}", std::process::id()));
     if divide(&base).is_ok() {
         return Some(base);
     }
@@ -53,13 +59,20 @@ fn divide(base: &Path) -> io::Result<()> {
 
 /// The group of a program by the process that starts it.
 fn of(base: &Path, process: u32) -> PathBuf {
-    base.join(format!("trik-{process}"))
+    base.join(format!("{PROGRAM}{process}"))
 }
 
 /// Puts this process, and what it starts, into a group of its own.
 pub(super) fn enter(base: &Path, memory: u64) -> io::Result<()> {
     let group = of(base, std::process::id());
-    fs::create_dir(&group)?;
+    if group.exists() {
+        // Numbers of processes come again: somebody was killed before he could remove it.
+        leave(base, std::process::id());
+    }
+    match fs::create_dir(&group) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+        _ => {}
+    }
     fs::write(group.join("memory.max"), memory.to_string())?;
     // Not each kernel counts swap.
     let _ = fs::write(group.join("memory.swap.max"), "0");
@@ -82,9 +95,52 @@ pub(super) fn leave(base: &Path, process: u32) {
     }
 }
 
+/// Removes the groups of programs whose judge was killed, with what is in them. Those of others that still run stay, so it
+/// is waited only for a while for the last of ours.
+pub(crate) fn sweep(base: &Path) {
+    for _ in 0..limits::SWEEPS {
+        if sweep_once(base) == 0 {
+            return;
+        }
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// How many there still are.
+fn sweep_once(base: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(base) else {
+        return 0;
+    };
+    let mut left = 0;
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let Some(name) = name.to_str() else { continue };
+        let number = |start: &str| name.strip_prefix(start)?.parse().ok();
+        if let Some(process) = number(PROGRAM) {
+            if !is_gone(process) {
+                left += 1;
+            } else if fs::remove_dir(entry.path()).is_err() {
+                leave(base, process);
+            }
+        } else if number(JUDGE).is_some_and(is_gone) {
+            let _ = fs::remove_dir(entry.path());
+        }
+    }
+    left
+}
+
+/// Whether a process has ended; one that nobody has asked how is still listed.
+fn is_gone(process: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    // The name in brackets may hold anything.
+    let state = status.rsplit(')').next().map(str::trim_start);
+    state.is_none_or(|state| state.is_empty() || state.starts_with(['Z', 'X']))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::process::{Command, Stdio};
 
     /// Plain files instead of the kernel's.
     #[test]
@@ -104,5 +160,31 @@ mod tests {
         assert_eq!(read(group.join(PROCESSES)), "0");
         leave(base.path(), std::process::id());
         assert_eq!(read(group.join("cgroup.kill")), "1");
+    }
+
+    #[test]
+    fn a_group_that_was_left_behind_is_taken_again_and_those_of_the_dead_are_removed() {
+        let base = tempfile::tempdir().unwrap();
+        let own = of(base.path(), std::process::id());
+        fs::create_dir(&own).unwrap();
+        fs::write(own.join("memory.max"), "1").unwrap();
+        enter(base.path(), 1 << 30).unwrap();
+        let most = fs::read_to_string(own.join("memory.max")).unwrap();
+        assert_eq!(most, (1 << 30).to_string());
+        let mut child = Command::new("cat").stdin(Stdio::piped()).spawn().unwrap();
+        let (group, judge) = (
+            of(base.path(), child.id()),
+            base.path().join(format!("{JUDGE}{}", child.id())),
+        );
+        fs::create_dir(&group).unwrap();
+        fs::create_dir(&judge).unwrap();
+        fs::create_dir(base.path().join("trik-of-somebody")).unwrap();
+        assert_eq!(sweep_once(base.path()), 2);
+        assert!(group.exists() && judge.exists());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(sweep_once(base.path()), 1);
+        assert!(!group.exists() && !judge.exists() && own.exists());
+        assert!(base.path().join("trik-of-somebody").exists());
     }
 }

@@ -45,11 +45,13 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     if !mounted.is_whole {
         order.miss(Layer::Mounts);
     }
-    take_limits(&order).map_err(failed)?;
     if order.is_dropping {
         outer::become_user(order.uid, order.gid).map_err(failed)?;
     }
     shed(&own, &mut order);
+    // A namespace of users keeps the number of processes that its maker may have as one for all such namespaces of that
+    // user together (Linux 5.14): taken before, all programs would share it.
+    take_limits(&order).map_err(failed)?;
     drop_rights();
     set_no_new_privs().map_err(failed)?;
     // After the last change of the user, which clears it.
@@ -120,7 +122,7 @@ fn mount_own(order: &Order) -> Mounted {
     let has_scratch =
         !is_taken && Path::new(SCRATCH).is_dir() && put("tmpfs", SCRATCH, plain, &room);
     Mounted {
-        is_whole: has_proc && is_shut,
+        is_whole: has_proc && is_shut && has_scratch,
         has_proc,
         is_counted,
         has_scratch,

@@ -15,21 +15,23 @@ use nix::sys::signal::Signal;
 use nix::sys::stat::Mode;
 use nix::sys::utsname::uname;
 use nix::unistd::{
-    Gid, Uid, dup2_stdin, getegid, geteuid, getppid, setegid, seteuid, setgid, setgroups, setuid,
-    write,
+    Gid, Uid, close, dup2_stdin, getegid, geteuid, getppid, setegid, seteuid, setgid, setgroups,
+    setuid, write,
 };
 use std::fs::{self, File};
+use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::Command;
-use trikd::program::kill;
 
 /// The user and the group that own nothing.
 const NOBODY: u32 = 65534;
 /// Since which kernel processes are counted for each namespace of users.
 const COUNTS_APART: (u32, u32) = (5, 14);
+/// How many namespaces of users there may be at all.
+const USERS_MOST: &str = "/proc/sys/user/max_user_namespaces";
 const NAMESPACES: [(CloneFlags, Layer); 4] = [
     (CloneFlags::CLONE_NEWPID, Layer::Processes),
     (CloneFlags::CLONE_NEWNS, Layer::Mounts),
@@ -40,6 +42,7 @@ const NAMESPACES: [(CloneFlags, Layer); 4] = [
 /// Starts the program, and gives how it has ended.
 pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     let failed = |error: nix::Error| Error::system("sandbox", error);
+    close_others().map_err(|error| Error::system("sandbox", error))?;
     set_pdeathsig(Signal::SIGKILL).map_err(failed)?;
     if getppid().as_raw() != order.parent {
         return Err(Error::system("sandbox", "the judge is gone"));
@@ -66,6 +69,19 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     let status = status.map_err(|error| Error::system("sandbox", error))?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     code.ok_or_else(|| Error::system("sandbox", status))
+}
+
+/// Closes what this process was left by what started the judge: the program has the three standard ones alone.
+fn close_others() -> io::Result<()> {
+    let open = fs::read_dir("/proc/self/fd")?;
+    let numbers: Vec<i32> = open
+        .filter_map(|one| one.ok()?.file_name().to_str()?.parse().ok())
+        .collect();
+    for number in numbers.into_iter().filter(|number| *number > 2) {
+        // The one of that folder is closed already.
+        let _ = close(number);
+    }
+    Ok(())
 }
 
 /// Leaves what can be left, and keeps what cannot.
@@ -95,7 +111,7 @@ fn separate(order: &mut Order) {
             (order.uid, order.gid) = (uid, gid);
             order.is_dropping = unshare(all).is_ok();
             if order.is_dropping {
-                order.threads = threads(Uid::from_raw(uid));
+                order.threads = threads(Uid::from_raw(uid), has_users());
                 return;
             }
             // The root of a container makes no namespaces, but another user may perhaps have one of users.
@@ -106,14 +122,18 @@ fn separate(order: &mut Order) {
         }
     }
     order.is_alone = geteuid().is_root();
-    order.threads = threads(geteuid());
     let (uid, gid) = (geteuid(), getegid());
     let user = match order.wants(Layer::User) {
         true => CloneFlags::CLONE_NEWUSER,
         false => CloneFlags::empty(),
     };
+    // Afterwards nobody has his number any more.
+    order.threads = threads(uid, !user.is_empty());
     let is_whole = unshare(user | all).is_ok();
     order.is_mapped = !user.is_empty() && (is_whole || unshare(user).is_ok());
+    if !order.is_mapped && order.threads == 0 {
+        order.threads = threads(uid, false);
+    }
     if !is_whole {
         for (flag, layer) in wanted {
             if unshare(flag).is_err() {
@@ -173,12 +193,34 @@ pub(super) fn become_user(uid: u32, gid: u32) -> nix::Result<()> {
     set_dumpable(true)
 }
 
-/// How many threads of a user there are, where they count against those of the program.
-fn threads(user: Uid) -> u64 {
-    match is_since(COUNTS_APART) {
-        true => 0,
-        false => kill::of_user(user),
+/// Whether a user other than root may make a namespace of users, as far as that is known before.
+fn has_users() -> bool {
+    fs::read_to_string(USERS_MOST).is_ok_and(|most| most.trim() != "0")
+}
+
+/// How many threads of a user there are, where they count against those of the program: not where it has a namespace of
+/// users.
+fn threads(user: Uid, is_apart: bool) -> u64 {
+    if is_apart && is_since(COUNTS_APART) {
+        return 0;
     }
+    let Ok(processes) = fs::read_dir("/proc") else {
+        return 0;
+    };
+    let statuses = processes
+        .flatten()
+        .filter_map(|one| fs::read_to_string(one.path().join("status")).ok());
+    statuses.filter_map(|text| threads_of(&text, user)).sum()
+}
+
+/// How many threads a process has by its `status`, if it is one of a user: the owner of its folder in `/proc` is root for
+/// some that count.
+fn threads_of(status: &str, user: Uid) -> Option<u64> {
+    let value = |key: &str| {
+        let line = status.lines().find_map(|line| line.strip_prefix(key))?;
+        line.split_whitespace().next()?.parse::<u32>().ok()
+    };
+    (value("Uid:")? == user.as_raw()).then(|| value("Threads:").map(u64::from))?
 }
 
 /// Whether the kernel is at least so new.
@@ -207,4 +249,27 @@ pub(super) fn map(own: &OwnedFd, user: (u32, u32), group: (u32, u32)) -> nix::Re
     // A kernel before 3.19 has no such file and does not ask for it.
     let _ = put("setgroups", "deny");
     put("gid_map", &format!("{} {} 1", group.0, group.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_count_by_the_user_that_a_process_has() {
+        let status = "Name:\tUid: 7\nUid:\t7\t0\t0\t0\nGid:\t1\t1\t1\t1\nThreads:\t12\n";
+        assert_eq!(threads_of(status, Uid::from_raw(7)), Some(12));
+        assert_eq!(threads_of(status, Uid::from_raw(0)), None);
+        let (send, wait) = std::sync::mpsc::channel::<()>();
+        let own = Uid::current();
+        std::thread::scope(|scope| {
+            scope.spawn(move || wait.recv());
+            let status = fs::read_to_string("/proc/self/status").unwrap();
+            let of_this = threads_of(&status, own).unwrap();
+            assert!(of_this >= 2, "{of_this}");
+            // Others of this process may end meanwhile, but these two do not.
+            assert!(threads(own, false) >= 2);
+            drop(send);
+        });
+    }
 }

@@ -47,16 +47,16 @@ fn lack(layer: Layer, is_root: bool) -> Words {
             "user: их папку или Python может читать только root, и они работают под root без его прав; разрешите чтение всем (chmod o+rX, и для папок выше) или запускайте trik не под root",
         ),
         Layer::User => Words::new(
-            "user: this kernel gives no namespace of users, so they run as your user; allow it (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0), or run trik as root, which makes them nobody",
-            "user: ядро не даёт пространства имён пользователей, и они работают под вашим пользователем; разрешите его (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0) или запускайте trik под root, тогда они станут nobody",
+            "user: this kernel gives no namespace of users, so the layers that need one may be missing too, and their processes count with yours; allow it (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0): they run as your user even then; only if trik runs as root they become nobody",
+            "user: ядро не даёт пространства имён пользователей, поэтому могут отсутствовать и слои, которым оно нужно, а их процессы считаются вместе с вашими; разрешите его (sysctl user.max_user_namespaces, kernel.apparmor_restrict_unprivileged_userns=0): они и тогда работают под вашим пользователем; станут nobody, только если trik запускает root",
         ),
         Layer::Processes => Words::new(
             "processes: without a namespace they see other processes, and what they start may outlive them for a moment; allow namespaces (in a container --cap-add SYS_ADMIN, or a seccomp profile that lets unshare pass)",
             "processes: без пространства имён они видят другие процессы, а запущенное ими может ненадолго пережить их; разрешите пространства имён (в контейнере --cap-add SYS_ADMIN или профиль seccomp, пропускающий unshare)",
         ),
         Layer::Mounts => Words::new(
-            "mounts: without a namespace they see /proc and /sys of the computer and have no scratch folder; allow namespaces, and in a container a /proc without masks (--security-opt systempaths=unconfined)",
-            "mounts: без пространства имён они видят /proc и /sys компьютера, и у них нет временной папки; разрешите пространства имён, а в контейнере /proc без масок (--security-opt systempaths=unconfined)",
+            "mounts: without a namespace they see /proc and /sys of the computer and have no scratch folder; allow namespaces, and in a container a /proc without masks (--security-opt systempaths=unconfined); if namespaces are there, they lack only the scratch folder, because there is no /dev/shm or the solutions are in it",
+            "mounts: без пространства имён они видят /proc и /sys компьютера, и у них нет временной папки; разрешите пространства имён, а в контейнере /proc без масок (--security-opt systempaths=unconfined); если пространства имён есть, нет только временной папки: нет /dev/shm, или решения лежат в ней",
         ),
         Layer::Network => Words::new(
             "network: without a namespace only the filter of calls keeps them from the network; allow namespaces, or run trik where there is no network",
