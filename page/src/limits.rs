@@ -19,7 +19,8 @@ pub const STUCK_TIME: Duration = Duration::from_secs(3);
 pub const MUTE_TIME: Duration = Duration::from_secs(5);
 /// A computer that has so many places more than another one gives some up for that at once, if nothing whole has come on them.
 pub const FAIR_LEAD: usize = 8;
-/// Bytes of one message that count as progress: so many in a second are an upload over a bad network, and fewer are none.
+/// Bytes of one message that count as progress: so many in the time after which a connection is stuck are an upload over a
+/// bad network, and fewer are none.
 pub const PROGRESS_BYTES: usize = 1 << 10;
 /// A connection to which nothing could be sent for so long is closed; a browser that looks is told something every second.
 pub const IDLE_TIME: Duration = Duration::from_secs(30);

@@ -137,6 +137,8 @@ async fn read(
                 Ok(None) => break,
                 Ok(Some(frame)) => {
                     moved = true;
+                    // A client that said something whole keeps its place while that is done.
+                    place.is_good();
                     handler.frame(frame).await;
                 }
                 Err(violation) => return Reason::Complaint(violation.to_string()),

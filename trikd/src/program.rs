@@ -61,8 +61,8 @@ struct Current {
     has_asked_nobody: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
-    /// Looks in a row at which a process of it stood still.
-    still_looks: u32,
+    /// A process of it that stood still, and at how many looks in a row.
+    still: (Option<Pid>, u32),
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
     /// Orders to its debugger that it has not answered yet.
@@ -311,7 +311,7 @@ impl Supervisor {
             has_reported_error: false,
             has_asked_nobody: false,
             is_watched: false,
-            still_looks: 0,
+            still: (None, 0),
             meter: Meter::default(),
             web: Vec::new(),
             orders: VecDeque::new(),
@@ -395,10 +395,14 @@ impl Supervisor {
         let (all, still) = kill::below_and_still(Pid::this());
         let count = u64::try_from(all.len()).unwrap_or(u64::MAX);
         let limit = self.around.settings.processes;
-        current.still_looks = still.map_or(0, |_| current.still_looks.saturating_add(1));
+        let before = match current.still {
+            (before, looks) if before == still => looks,
+            _ => 0,
+        };
+        current.still = (still, before.saturating_add(1));
         let why = match still {
             _ if count > limit => format!("it had {count} processes, and {limit} are allowed"),
-            Some(pid) if current.still_looks >= limits::STILL_LOOKS => {
+            Some(pid) if current.still.1 >= limits::STILL_LOOKS => {
                 format!("its process {pid} stood still (SIGSTOP)")
             }
             _ => return,
