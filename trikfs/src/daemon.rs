@@ -39,6 +39,14 @@ pub enum Transport {
     Fuser,
 }
 
+/// A configuration that was in force.
+pub struct InForce {
+    /// Its bytes.
+    pub config: Vec<u8>,
+    /// The copies of its libraries.
+    pub copies: CopyNames,
+}
+
 /// What the process is started with.
 pub struct Options {
     /// The mounted /dev/fuse.
@@ -47,10 +55,8 @@ pub struct Options {
     pub mountpoint: PathBuf,
     /// The configuration file; an empty tree without one.
     pub config: Option<PathBuf>,
-    /// Bytes that were in force before a crash; they take the place of the file's.
-    pub in_force: Option<Vec<u8>>,
-    /// The copies of libraries that were in force with them.
-    pub promised: CopyNames,
+    /// What was in force before a crash; it takes the place of the file.
+    pub in_force: Option<InForce>,
     /// Where `include` looks.
     pub include_dirs: Vec<PathBuf>,
     /// Where shared libraries are looked for after the configuration's directory.
@@ -99,11 +105,6 @@ pub fn run(options: Options) -> Result<(), Failure> {
     )));
     oversee(&engine, &forest);
     let files = Arc::new(OpenFiles::default());
-    let base_dir = options
-        .config
-        .as_deref()
-        .and_then(Path::parent)
-        .map(Path::to_path_buf);
     let setup = Setup {
         engine: engine.clone(),
         forest: forest.clone(),
@@ -113,9 +114,9 @@ pub fn run(options: Options) -> Result<(), Failure> {
             library_dirs: options.library_dirs,
             device_root: options.device_root,
         },
-        base_dir,
+        base_dir: base_dir(options.config.as_deref()),
         cache: options.cache,
-        promised: options.promised,
+        promised: promised(options.in_force.as_ref()),
         owner: options.owner,
         last_ino,
         ledger: options.ledger,
@@ -158,12 +159,22 @@ pub fn run(options: Options) -> Result<(), Failure> {
     outcome
 }
 
+/// Where relative paths of a configuration start.
+fn base_dir(config: Option<&Path>) -> Option<PathBuf> {
+    config.and_then(Path::parent).map(Path::to_path_buf)
+}
+
+fn promised(in_force: Option<&InForce>) -> CopyNames {
+    in_force.map_or_else(CopyNames::new, |in_force| in_force.copies.clone())
+}
+
 /// Has the guardian, which is the parent, looked at while actuators are driven.
 fn oversee(engine: &Arc<Engine>, forest: &Arc<Forest>) {
     let forest = forest.clone();
     let guardian = getppid().as_raw().unsigned_abs();
     let nodes = Box::new(move || forest.tree().nodes().to_vec());
-    engine.oversee(Oversight::new(guardian, engine, nodes));
+    let oversight = Oversight::new(guardian, engine, nodes);
+    engine.on_driven(Box::new(move || oversight.driven()));
 }
 
 /// Readers of shared memory see the end, even of nodes that something still holds.
@@ -196,11 +207,11 @@ fn raise_file_limit() {
 /// The name and bytes of the configuration to begin with.
 fn first_configuration(
     file: Option<&Path>,
-    in_force: Option<Vec<u8>>,
+    in_force: Option<InForce>,
 ) -> Result<(String, Vec<u8>), Failure> {
     let name = file.map_or_else(|| "config".to_owned(), |file| file.display().to_string());
-    if let Some(bytes) = in_force {
-        return Ok((name, bytes));
+    if let Some(in_force) = in_force {
+        return Ok((name, in_force.config));
     }
     let Some(file) = file else {
         return Ok((name, b"trikfs = {}\n".to_vec()));

@@ -6,7 +6,6 @@ use crate::device::i2c::bus::Buses;
 use crate::errno::Error;
 
 use crate::events::{Poller, Schedule, lock};
-use crate::guardian::oversight::Oversight;
 use crate::limits;
 use crate::log::Log;
 use crate::panics::Panics;
@@ -38,8 +37,8 @@ pub struct Engine {
     kernel: OnceLock<Arc<dyn Kernel>>,
     /// Of all threads of the process.
     pub panics: Arc<Panics>,
-    /// Where there is a guardian to look at.
-    oversight: OnceLock<Arc<Oversight>>,
+    /// Called before and after an actuator is driven.
+    on_driven: OnceLock<Box<dyn Fn() + Send + Sync>>,
     parked: Mutex<HashSet<RequestId>>,
 }
 
@@ -57,7 +56,7 @@ impl Engine {
             bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
             panics: Arc::default(),
-            oversight: OnceLock::new(),
+            on_driven: OnceLock::new(),
             parked: Mutex::default(),
         }))
     }
@@ -78,15 +77,15 @@ impl Engine {
         self.schedule.clone()
     }
 
-    /// From here on somebody looks at the guardian while actuators are driven.
-    pub fn oversee(&self, oversight: Arc<Oversight>) {
-        let _ = self.oversight.set(oversight);
+    /// What is called when an actuator is driven; the first one counts.
+    pub fn on_driven(&self, call: Box<dyn Fn() + Send + Sync>) {
+        let _ = self.on_driven.set(call);
     }
 
-    /// An actuator is about to be driven.
+    /// An actuator is driven.
     pub fn driven(&self) {
-        if let Some(oversight) = self.oversight.get() {
-            oversight.driven();
+        if let Some(call) = self.on_driven.get() {
+            call();
         }
     }
 

@@ -137,6 +137,8 @@ impl Refused {
         let pause = Duration::from_millis(limits::MISTAKE_MS.into());
         if last.is_none_or(|last| now.duration_since(last) >= pause) {
             *last = Some(now);
+            // Followers of the log are told inside.
+            drop(last);
             engine.log.line(&format!("open: {error}"));
         }
     }

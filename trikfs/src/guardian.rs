@@ -89,8 +89,11 @@ fn serve_once(
             return Err(error.into());
         }
     };
-    let end = Child::start(&device, ledger, &mounted, &plan.arguments, again)
-        .and_then(|mut child| watch.until_end(&mut child, &|| mounted.is_there(), ready));
+    let end =
+        Child::start(&device, ledger, &mounted, &plan.arguments, again).and_then(|mut child| {
+            let (is_there, cut_off) = (|| mounted.is_there(), || mounted.abort());
+            watch.until_end(&mut child, &is_there, &cut_off, ready)
+        });
     clean_up(ledger, &mounted, device);
     end.map_err(|error| Failure::system("daemon", error))
 }

@@ -42,6 +42,10 @@ pub const OPEN_MEMORY_PART: u64 = 8;
 pub const OPEN_BYTES_LEAST: usize = 16 << 20;
 /// ... and no more than this on any machine.
 pub const OPEN_BYTES_MOST: usize = 512 << 20;
+/// All users but the owner and root may hold this part of it together, and of the open files.
+pub const OPEN_PART_OF_OTHERS: usize = 2;
+/// One of them may hold this part.
+pub const OPEN_PART_OF_ONE: usize = 4;
 /// Bytes that an open file takes without what is behind it.
 pub const OPEN_FILE_BYTES: usize = 1024;
 /// Bytes of memory of the smallest board.
@@ -174,6 +178,12 @@ pub const PANICS_KEPT: usize = 8;
 pub const PANIC_WORDS_MAX: usize = 240;
 /// Milliseconds between two looks of the daemon whether its guardian is stopped, while an actuator is driven.
 pub const GUARDIAN_LOOK_MS: u64 = 400;
+/// Time from the end of a daemon's lifeline to its end, which takes a moment; actuators run meanwhile.
+pub const REAP_PATIENCE: Duration = Duration::from_millis(5);
+/// Time that a dead daemon may still hang once its connection is cut off.
+pub const CUT_OFF_PATIENCE: Duration = Duration::from_millis(500);
+/// Pause between two looks whether it has ended.
+pub const REAP_PAUSE: Duration = Duration::from_millis(1);
 /// Milliseconds that bringing all actuators to rest may take.
 pub const REST_MS_MAX: u32 = 3_000;
 /// Rest actions in one ledger.

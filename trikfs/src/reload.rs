@@ -188,7 +188,7 @@ impl Reloader {
         progress: &dyn Fn(&str),
     ) -> Result<usize, Problem> {
         let _one = lock(&self.one_at_a_time);
-        // Whoever wrote the configuration waits for a verdict, and the next configuration for this thread.
+        // The program that wrote the configuration waits for a verdict, and the next configuration for this thread.
         let tried = catch_unwind(AssertUnwindSafe(|| self.try_apply(name, bytes, progress)));
         let outcome = tried.unwrap_or_else(|_| {
             Err(Problem::new(

@@ -266,7 +266,7 @@ fn after_a_crash_the_library_in_force_is_loaded_whatever_its_file_contains() {
         let told = "plus.so is not what it was: the copy that was in force is used until the next configuration";
         assert!(log.contains(told), "{log}");
     }
-    // Whoever asks for the configuration anew hears what the file is now, and then has what it is.
+    // A program that asks for the configuration anew hears what the file is now, and then has what it is.
     let line = m.apply(config).unwrap_err();
     assert!(line.contains("plus.so"), "{line}");
     assert_eq!(m.read("n/bin_data").unwrap(), [6]);

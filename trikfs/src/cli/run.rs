@@ -6,9 +6,10 @@
 
 use super::{MountArgs, ServeArgs, absolute, notify};
 use crate::convert::shared::copies;
-use crate::daemon::{self, Options};
+use crate::daemon::{self, InForce, Options};
 use crate::failure::Failure;
 use crate::guardian::inherit::{Farewell, Inheritance};
+use crate::guardian::ledger::Ledger;
 use crate::guardian::{self, Plan};
 use crate::limits::READY_LINE_BYTES_MAX;
 use crate::mount::MountOptions;
@@ -174,7 +175,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
     let fail = |error: io::Error| Failure::system("serve", error);
     let farewell =
         Farewell::prepare(&inheritance, &args.mountpoint, &args.handover).map_err(fail)?;
-    let lifeline = inheritance.lifeline.share().map_err(fail)?;
+    let lifeline = inheritance.lifeline.clone();
     let paths = args.tree.search.paths()?;
     let detached = args.detached;
     let again = args.handover.again;
@@ -182,10 +183,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
         device: inheritance.device,
         mountpoint: args.mountpoint,
         config: args.tree.config,
-        in_force: again.then(|| inheritance.ledger.config()).flatten(),
-        promised: again
-            .then(|| copies::decode(&inheritance.ledger.copies()))
-            .unwrap_or_default(),
+        in_force: again.then(|| in_force(&inheritance.ledger)).flatten(),
         include_dirs: paths.include_dirs,
         library_dirs: paths.library_dirs,
         device_root: paths.device_root,
@@ -218,6 +216,14 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
     farewell.say();
     drop(inheritance.lifeline);
     result
+}
+
+/// What the daemon before this one had in force.
+fn in_force(ledger: &Ledger) -> Option<InForce> {
+    Some(InForce {
+        config: ledger.config()?,
+        copies: copies::decode(&ledger.copies()),
+    })
 }
 
 #[cfg(test)]

@@ -31,12 +31,15 @@ struct Admitted {
 
 /// A write that the leases let in, for as long as it lasts.
 pub struct Admission<'a> {
+    node: &'a Node,
     leases: &'a [Arc<Lease>],
     generations: Vec<u32>,
 }
 
 impl Drop for Admission<'_> {
     fn drop(&mut self) {
+        // Once more: a rest that came before the bytes of this write has taken the note back.
+        self.node.note_driven();
         for (lease, generation) in self.leases.iter().zip(&self.generations) {
             lease.wrote(*generation);
         }
@@ -46,11 +49,9 @@ impl Drop for Admission<'_> {
 impl Ownership {
     /// Asks every lease that a write to the node touches. Keep the result until the device has the bytes.
     pub fn admit<'a>(&self, node: &'a Node, caller: Caller) -> Result<Admission<'a>, Error> {
-        if node.description.rest.is_some() && !node.driving.is_driven() {
-            node.driving.set_driven(true);
-            node.engine.driven();
-        }
+        node.note_driven();
         let mut admission = Admission {
+            node,
             leases: &node.driving.leases,
             generations: Vec::with_capacity(node.driving.leases.len()),
         };

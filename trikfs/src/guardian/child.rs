@@ -7,7 +7,7 @@
 use super::inherit::Handover;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
-use crate::limits::LIFE_LINE_BYTES_MAX;
+use crate::limits::{CUT_OFF_PATIENCE, LIFE_LINE_BYTES_MAX, REAP_PATIENCE, REAP_PAUSE};
 use nix::sys::signal::{Signal, kill};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
@@ -16,6 +16,7 @@ use std::io::{self, PipeReader, Read};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::process::CommandExt;
 use std::process::{self, Command, ExitStatus};
+use std::time::Instant;
 
 /// A running daemon. Dropping it kills it.
 pub(super) struct Child {
@@ -150,9 +151,25 @@ impl Child {
         }
     }
 
-    /// How it ended; call it after [`Heard::End`].
-    pub(super) fn wait(&mut self) -> io::Result<ExitStatus> {
-        self.process.wait()
+    /// How it ended; call it after [`Heard::End`]. A thread of it that hangs in a page of our own tree ends when the connection
+    /// is cut off, which is done if the process is not gone soon. None: it hangs even then.
+    pub(super) fn wait(&mut self, cut_off: &dyn Fn()) -> io::Result<Option<ExitStatus>> {
+        for (patience, then) in [(REAP_PATIENCE, Some(cut_off)), (CUT_OFF_PATIENCE, None)] {
+            let until = Instant::now() + patience;
+            loop {
+                if let Some(status) = self.process.try_wait()? {
+                    return Ok(Some(status));
+                }
+                if Instant::now() > until {
+                    break;
+                }
+                std::thread::sleep(REAP_PAUSE);
+            }
+            if let Some(cut_off) = then {
+                cut_off();
+            }
+        }
+        Ok(None)
     }
 }
 
@@ -194,7 +211,29 @@ mod tests {
     fn the_line_tells_of_readiness_and_of_the_end() {
         let mut child = Child::shell("printf 'rea'; printf 'dy 6\\n'; exit 3");
         assert_eq!(all(&mut child), [Heard::Ready(6)]);
-        assert_eq!(child.wait().expect("ended").code(), Some(3));
+        let status = child.wait(&|| panic!("it ends by itself"));
+        assert_eq!(
+            status.expect("ended").and_then(|status| status.code()),
+            Some(3)
+        );
+    }
+
+    #[test]
+    fn one_that_is_dead_but_does_not_end_is_cut_off_and_then_given_up() {
+        // It closes the line and goes on, as a process does of which one thread hangs.
+        let cuts = std::cell::Cell::new(0);
+        let mut child = Child::shell("exec >&-; exec sleep 1000");
+        assert_eq!(all(&mut child), []);
+        let given_up = child.wait(&|| cuts.set(cuts.get() + 1)).expect("no error");
+        assert_eq!((given_up, cuts.get()), (None, 1));
+        let mut other = Child::shell("exec >&-; exec sleep 1000");
+        let pid = other.process.id();
+        assert_eq!(all(&mut other), []);
+        let status = other.wait(&|| {
+            let pid = Pid::from_raw(i32::try_from(pid).expect("a number"));
+            kill(pid, Signal::SIGKILL).expect("killed");
+        });
+        assert!(status.expect("no error").is_some());
     }
 
     #[test]

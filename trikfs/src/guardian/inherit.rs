@@ -8,14 +8,16 @@ use super::clean_up;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
 use crate::failure::Failure;
+use nix::sched::{CloneFlags, unshare};
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::{SigSet, Signal};
 use nix::unistd::{dup2_stdin, dup2_stdout, getppid};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, Write};
-use std::os::fd::{AsFd, OwnedFd, RawFd};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd, RawFd};
 use std::path::Path;
+use std::sync::mpsc::{Sender, channel};
 
 /// What the guardian tells the daemon on its command line, as options of `serve`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::Args)]
@@ -67,24 +69,68 @@ pub struct Inheritance {
 }
 
 /// The writing end of the pipe that tells the guardian of our life.
-pub struct Lifeline(File);
+///
+/// A thread of its own has it, and that thread has a table of descriptors of its own. A process that is killed keeps its
+/// descriptors until its last thread has ended, and one that hangs in the kernel, in a page that an unanswered request holds,
+/// would do so for ever; this thread waits for nothing but words, so the pipe closes at once.
+#[derive(Clone)]
+pub struct Lifeline(Sender<(String, Sender<()>)>);
 
 impl Lifeline {
+    /// Gives the pipe to a thread. The caller has no other copy of it.
+    fn keep(pipe: OwnedFd) -> io::Result<Self> {
+        let number = pipe.as_raw_fd();
+        let (words, to_say) = channel::<(String, Sender<()>)>();
+        let (separated, is_separated) = channel();
+        std::thread::Builder::new()
+            .name("lifeline".to_owned())
+            .spawn(move || {
+                let _ = separated.send(separate(number).is_ok());
+                let mut pipe = File::from(pipe);
+                for (word, said) in to_say {
+                    // If nobody listens, the guardian is dead and its signal is on the way.
+                    let _ = pipe.write_all(word.as_bytes());
+                    let _ = said.send(());
+                }
+            })?;
+        // Where the kernel gives the thread no table of its own, the pipe is in the one that all share.
+        if is_separated.recv() == Ok(true) {
+            let _ = nix::unistd::close(number);
+        }
+        Ok(Self(words))
+    }
+
     /// Tells the guardian that the filesystem with so many nodes is being served.
     pub fn ready(&self, nodes: usize) {
-        // If nobody listens, the guardian is dead and its signal is on the way.
-        let _ = (&self.0).write_all(format!("ready {nodes}\n").as_bytes());
+        self.say(format!("ready {nodes}\n"));
     }
 
     /// Tells the guardian that this process is about to end in order.
     pub fn over(&self) {
-        let _ = (&self.0).write_all(b"over\n");
+        self.say("over\n".to_owned());
     }
 
-    /// Another handle on it.
-    pub fn share(&self) -> io::Result<Self> {
-        self.0.try_clone().map(Self)
+    /// Returns when it has been said: the process may end right then.
+    fn say(&self, word: String) {
+        let (said, is_said) = channel();
+        if self.0.send((word, said)).is_ok() {
+            let _ = is_said.recv();
+        }
     }
+}
+
+/// Gives this thread a table of descriptors with this one alone.
+fn separate(kept: RawFd) -> io::Result<()> {
+    unshare(CloneFlags::CLONE_FILES)?;
+    let open: Vec<RawFd> = std::fs::read_dir("/proc/thread-self/fd")?
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .collect();
+    for number in open.into_iter().filter(|number| *number != kept) {
+        // One of them was that of the folder.
+        let _ = nix::unistd::close(number);
+    }
+    Ok(())
 }
 
 impl Inheritance {
@@ -118,7 +164,7 @@ impl Inheritance {
         Ok(Self {
             device,
             ledger,
-            lifeline: Lifeline(File::from(lifeline)),
+            lifeline: Lifeline::keep(lifeline).map_err(fail)?,
         })
     }
 }

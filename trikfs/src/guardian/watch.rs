@@ -57,12 +57,13 @@ impl Watch {
     }
 
     /// Waits for the daemon's end. Brings it about when a signal comes or the mount goes: first by asking, after two
-    /// seconds by force. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
+    /// seconds by force. `cut_off` ends the connection, for a daemon that is dead and hangs in it. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
     /// actuators driven and requests unanswered. `ready` is called when the daemon says that it serves.
     pub(super) fn until_end(
         &self,
         child: &mut Child,
         mounted: &dyn Fn() -> bool,
+        cut_off: &dyn Fn(),
         ready: &mut dyn FnMut(usize),
     ) -> io::Result<End> {
         let grace = Duration::from_millis(limits::GRACE_MS.into());
@@ -86,7 +87,9 @@ impl Watch {
                     // A signal from a terminal reaches the daemon as well, and it may be the first to end.
                     Heard::End => {
                         let asked = stop || urgency != Urgency::None;
-                        let status = child.wait()?;
+                        let Some(status) = child.wait(cut_off)? else {
+                            return Ok(hanging(asked));
+                        };
                         if standstill.was_killed && !asked {
                             return Ok(End::Crashed("stopped and did not go on".to_owned()));
                         }
@@ -196,6 +199,14 @@ enum Life {
     Over,
 }
 
+/// It is dead, and a thread of it is inside a device that does not return. What is left to do must not wait for it.
+fn hanging(asked: bool) -> End {
+    match asked {
+        true => End::Stopped,
+        false => End::Crashed("killed, and hangs in the kernel".to_owned()),
+    }
+}
+
 /// What an exit status means; `asked` if the guardian has asked for the end. A daemon that exits while it serves,
 /// without a word, did not mean to: native code has called exit().
 fn judge(status: ExitStatus, asked: bool, life: Life) -> End {
@@ -227,7 +238,9 @@ mod tests {
         let mut heard = Vec::new();
         let mut child = Child::shell(script);
         let end = Watch::new()
-            .and_then(|watch| watch.until_end(&mut child, &|| true, &mut |nodes| heard.push(nodes)))
+            .and_then(|watch| {
+                watch.until_end(&mut child, &|| true, &|| {}, &mut |nodes| heard.push(nodes))
+            })
             .expect("watched");
         (end, heard)
     }
@@ -289,7 +302,7 @@ mod tests {
             pthread_kill(pthread_self(), Signal::SIGTERM).expect("sent to this thread");
         };
         let end = watch
-            .until_end(&mut child, &|| true, &mut ready)
+            .until_end(&mut child, &|| true, &|| {}, &mut ready)
             .expect("watched");
         assert_eq!(end, End::Stopped);
         assert!(

@@ -80,8 +80,8 @@ impl Driving {
         self.is_driven.load(Ordering::SeqCst)
     }
 
-    /// A program is let in, or the actuator has come to rest.
-    pub fn set_driven(&self, is_driven: bool) {
+    /// A program is let in, or the actuator comes to rest.
+    pub(super) fn set_driven(&self, is_driven: bool) {
         self.is_driven.store(is_driven, Ordering::SeqCst);
     }
 

@@ -27,9 +27,27 @@ impl Node {
         Ok(Some(tuple))
     }
 
+    /// A program is about to drive the actuator, or has just done it: somebody looks after it from here on.
+    pub fn note_driven(&self) {
+        if self.description.rest.is_some() {
+            self.driving.set_driven(true);
+            self.engine.driven();
+        }
+    }
+
     /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
     /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
+        // First, so that a write that comes between is noted.
+        self.driving.set_driven(false);
+        let rested = self.write_rest();
+        if rested.is_err() {
+            self.driving.set_driven(true);
+        }
+        rested
+    }
+
+    fn write_rest(self: &Arc<Self>) -> Result<(), Error> {
         if let Some(rested) = self.driving.rest_what_is_held() {
             return rested;
         }
@@ -136,12 +154,9 @@ pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
     }
     let work = || {
         while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
-            match node.rest() {
-                Ok(()) => node.driving.set_driven(false),
-                Err(error) => {
-                    node.report(&error);
-                    lock(&failures).push(error);
-                }
+            if let Err(error) = node.rest() {
+                node.report(&error);
+                lock(&failures).push(error);
             }
         }
     };

@@ -48,7 +48,9 @@ impl Copies {
         let promised = self.promised.get(path);
         let kept = promised
             .map(|name| cache.path(name))
-            .filter(|file| is_whole(file));
+            .filter(|file| is_whole(file))
+            // Before another copy comes, which may take the place of the oldest ones.
+            .inspect(|file| cache.touch(file));
         let file = match (kept, copy(path, cache)) {
             (None, now) => now?,
             (Some(kept), now) => {
@@ -58,7 +60,6 @@ impl Copies {
                         path.display()
                     ));
                 }
-                cache.touch(&kept);
                 kept
             }
         };

@@ -13,19 +13,23 @@
 use super::abi::notify;
 use super::complain;
 use super::encode;
+use crate::clock::coarse_ms;
 use crate::errno::Error;
-use crate::limits::{KERNEL_PATIENCE, KERNEL_PAUSE_MAX};
+use crate::limits::{KERNEL_PATIENCE, KERNEL_PAUSE_MAX, MISTAKE_MS};
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
 use nix::errno::Errno;
 use nix::sys::uio;
 use nix::unistd;
 use std::io::IoSlice;
 use std::os::fd::OwnedFd;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// The connection to the kernel.
 pub(crate) struct Link {
     device: OwnedFd,
+    /// When a call that failed was told of last, in ms of [`coarse_ms`]; a kernel in distress must not fill a disk with lines.
+    told_ms: AtomicU32,
     #[cfg(test)]
     inject: Option<Inject>,
 }
@@ -45,6 +49,7 @@ impl Link {
     pub(crate) fn new(device: OwnedFd) -> Self {
         Self {
             device,
+            told_ms: AtomicU32::new(coarse_ms().wrapping_sub(MISTAKE_MS)),
             #[cfg(test)]
             inject: None,
         }
@@ -52,7 +57,7 @@ impl Link {
 
     /// Waits for the next request. ENODEV when the mount is gone, EINTR after a signal.
     pub(crate) fn read(&self, buffer: &mut [u8]) -> Result<usize, Errno> {
-        persist("a read of a request", || {
+        self.persist("a read of a request", || {
             #[cfg(test)]
             self.injected(Call::Read)?;
             unistd::read(&self.device, buffer)
@@ -61,7 +66,7 @@ impl Link {
 
     /// Sends one message that is in one piece.
     pub(crate) fn send(&self, message: &[u8]) -> Result<(), Errno> {
-        persist("a message", || {
+        self.persist("a message", || {
             #[cfg(test)]
             self.injected(Call::Write(message.len()))?;
             again(|| unistd::write(&self.device, message))
@@ -80,7 +85,7 @@ impl Link {
             Err(errno) if is_gone(errno) => return Delivery::Unwanted,
             Err(errno) => errno,
         };
-        complain(format_args!(
+        self.tell(format_args!(
             "the kernel refused an answer: {errno}; its caller gets EIO"
         ));
         let failed = Error::Internal("an answer could not be delivered".to_owned());
@@ -94,6 +99,43 @@ impl Link {
         }
     }
 
+    /// Calls until it succeeds, fails for good, or has failed for as long as it may. Pauses grow, so that a kernel which is
+    /// short of something is left in peace.
+    fn persist<T>(
+        &self,
+        what: &str,
+        mut call: impl FnMut() -> Result<T, Errno>,
+    ) -> Result<T, Errno> {
+        let mut result = call();
+        let Err(errno) = result else { return result };
+        if !is_passing(errno) {
+            return result;
+        }
+        self.tell(format_args!("{what} failed: {errno}; it is tried again"));
+        let until = Instant::now() + KERNEL_PATIENCE;
+        let mut pause = Duration::from_millis(1);
+        while matches!(result, Err(errno) if is_passing(errno)) && Instant::now() < until {
+            std::thread::sleep(pause);
+            pause = (pause * 2).min(KERNEL_PAUSE_MAX);
+            result = call();
+        }
+        result
+    }
+
+    /// A line about a call that failed, now and then.
+    fn tell(&self, line: std::fmt::Arguments<'_>) {
+        let now = coarse_ms();
+        let last = self.told_ms.load(Ordering::Relaxed);
+        let is_due = now.wrapping_sub(last) >= MISTAKE_MS;
+        let swap = |last| {
+            self.told_ms
+                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
+        };
+        if is_due && swap(last).is_ok() {
+            complain(line);
+        }
+    }
+
     /// A message that must arrive does not: only another life of the daemon can mend that.
     fn beyond_help(&self, what: &str, errno: Errno) {
         complain(format_args!(
@@ -101,23 +143,25 @@ impl Link {
         ));
         #[cfg(test)]
         if let Some(inject) = &self.inject {
-            return inject.lost.store(true, std::sync::atomic::Ordering::SeqCst);
+            return inject.lost.store(true, Ordering::SeqCst);
         }
         std::process::abort();
     }
 
     /// Sends one message that is in several pieces.
     fn send_parts(&self, parts: &[&[u8]]) -> Result<(), Errno> {
+        self.persist("a message", || self.try_parts(parts))
+    }
+
+    fn try_parts(&self, parts: &[&[u8]]) -> Result<(), Errno> {
         let mut slices = [IoSlice::new(&[]); 4];
         let count = parts.len().min(slices.len());
         for (slice, part) in slices.iter_mut().zip(parts) {
             *slice = IoSlice::new(part);
         }
-        persist("a message", || {
-            #[cfg(test)]
-            self.injected(Call::Write(parts.iter().map(|part| part.len()).sum()))?;
-            again(|| uio::writev(&self.device, &slices[..count]))
-        })
+        #[cfg(test)]
+        self.injected(Call::Write(parts.iter().map(|part| part.len()).sum()))?;
+        again(|| uio::writev(&self.device, &slices[..count]))
     }
 
     /// Sends what must not be lost while somebody is there who could miss it.
@@ -154,45 +198,24 @@ fn again(mut write: impl FnMut() -> Result<usize, Errno>) -> Result<(), Errno> {
     }
 }
 
-/// Calls until it succeeds, fails for good, or has failed for as long as it may. Pauses grow, so that a kernel which is
-/// short of something is left in peace.
-fn persist<T>(what: &str, mut call: impl FnMut() -> Result<T, Errno>) -> Result<T, Errno> {
-    let mut result = call();
-    if !matches!(result, Err(errno) if is_passing(errno)) {
-        return result;
-    }
-    let until = Instant::now() + KERNEL_PATIENCE;
-    let mut pause = Duration::from_millis(1);
-    while let Err(errno) = result
-        && is_passing(errno)
-        && Instant::now() < until
-    {
-        if pause.as_millis() == 1 {
-            complain(format_args!("{what} failed: {errno}; it is tried again"));
-        }
-        std::thread::sleep(pause);
-        pause = (pause * 2).min(KERNEL_PAUSE_MAX);
-        result = call();
-    }
-    result
-}
-
 /// Errors that say nothing of the message and may be over the next time. A request that the kernel could not hand over is
-/// answered by the kernel itself, and EIO only tells of it.
+/// answered by the kernel itself, and EIO only tells of it; ENOSYS is what a tracer leaves that was killed in the middle.
 fn is_passing(errno: Errno) -> bool {
-    matches!(
-        errno,
-        Errno::EAGAIN | Errno::EFAULT | Errno::EIO | Errno::ENOBUFS | Errno::ENOMEM
-    )
+    errno == Errno::EAGAIN
+        || errno == Errno::EFAULT
+        || errno == Errno::EIO
+        || errno == Errno::ENOBUFS
+        || errno == Errno::ENOMEM
+        || errno == Errno::ENOSYS
 }
 
 /// The addressee of a message is gone: the request was answered already, the file is not known to the kernel, the mount is
 /// gone.
 fn is_gone(errno: Errno) -> bool {
-    matches!(
-        errno,
-        Errno::ENOENT | Errno::ENODEV | Errno::ENOTCONN | Errno::ECONNABORTED
-    )
+    errno == Errno::ENOENT
+        || errno == Errno::ENODEV
+        || errno == Errno::ENOTCONN
+        || errno == Errno::ECONNABORTED
 }
 
 /// Logs a message that the kernel refused, except when its addressee is gone.
@@ -232,8 +255,16 @@ impl Kernel for Link {
         };
         let head = encode::store(ino, size);
         let header = encode::notify_header(notify::STORE, head.len() + data.len());
-        let sent = self.send_parts(&[&header, &head, data]);
-        report("bytes for its cache", sent);
+        // Once: the next value comes soon. But what is in the cache must not stay there as the newest one.
+        let sent = self.try_parts(&[&header, &head, data]);
+        if let Err(errno) = sent
+            && !is_gone(errno)
+        {
+            self.tell(format_args!(
+                "the kernel refused bytes for its cache: {errno}"
+            ));
+            self.invalidate(ino);
+        }
         sent.is_ok()
     }
 
@@ -269,7 +300,7 @@ pub(crate) enum Call {
     Write(usize),
 }
 
-/// Errors in the place of calls on the device.
+/// Errors instead of calls on the device.
 #[cfg(test)]
 #[derive(Clone)]
 pub(crate) struct Inject {

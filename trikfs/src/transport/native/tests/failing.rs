@@ -212,6 +212,27 @@ fn an_invalidation_is_never_lost() {
 }
 
 #[test]
+fn a_value_that_cannot_be_stored_does_not_stay_an_old_one() {
+    let Some(failing) = Failing::new("a_value_that_cannot_be_stored_does_not_stay_an_old_one")
+    else {
+        return;
+    };
+    let kernel = failing.rig.fs.kernel();
+    let read = || fs::read(failing.rig.path("cached")).unwrap();
+    let own = read();
+    let stored = vec![b'#'; own.len()];
+    assert!(kernel.store(CACHED, &stored));
+    // The page is full of what was stored, and the filesystem is not asked.
+    assert_eq!(read(), stored);
+    let mut is_first = true;
+    failing.fail(move |call| {
+        (matches!(call, Call::Write(_)) && std::mem::take(&mut is_first)).then_some(Errno::ENOMEM)
+    });
+    assert!(!kernel.store(CACHED, b"newer"));
+    assert_eq!(read(), own);
+}
+
+#[test]
 fn reads_that_fail_for_good_end_the_session_with_the_reason() {
     let Some(mut failing) =
         Failing::new("reads_that_fail_for_good_end_the_session_with_the_reason")

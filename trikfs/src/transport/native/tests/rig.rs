@@ -392,7 +392,7 @@ impl Rig {
         unmount(&self.path).unwrap()
     }
 
-    /// Cuts the connection off, as the guardian does when the daemon is dead: whoever waits is told.
+    /// Cuts the connection off, as the guardian does when the daemon is dead: all that wait are told.
     pub(crate) fn abort(&self) {
         Mounted::find(&self.path).unwrap().abort();
     }
