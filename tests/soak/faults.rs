@@ -155,6 +155,7 @@ fn attempt(robot: &Robot, figures: &Figures, fault: Fault) -> Option<Option<Dura
         return None;
     }
     drop(ordering);
+    figures.doing(fault.name());
     let mut helper = (fault == Fault::FailCalls)
         .then(|| make_calls_fail(robot, figures))
         .flatten();
@@ -224,6 +225,7 @@ fn act(robot: &Robot, figures: &Figures, fault: Fault, writer: Option<&Child>) -
 
 /// From here on, while the process given lives, every third call of the daemon on /dev/fuse fails.
 fn make_calls_fail(robot: &Robot, figures: &Figures) -> Option<Child> {
+    figures.slow(TRACED + TRACER_PATIENCE);
     let tracer = Command::new("strace")
         .args(["-f", "-q", "-P", "/dev/fuse", "-o", "/dev/null"])
         .args(["-e", "trace=read,write,writev"])

@@ -80,6 +80,10 @@ struct State {
     rests: BTreeMap<&'static str, Vec<Duration>>,
     /// Until when calls may fail.
     disturbed: Option<Instant>,
+    /// Until when samples may be late.
+    slowed: Option<Instant>,
+    /// What was done last, and when.
+    last: Option<(&'static str, Instant)>,
     begin: Footprint,
     end: Footprint,
     length: Duration,
@@ -129,6 +133,16 @@ impl Figures {
         self.lock().disturbed = Some(Instant::now() + time + DISTURBED);
     }
 
+    /// A tracer comes now, for about so long: all threads stand still for a moment, so samples may be late.
+    pub fn slow(&self, time: Duration) {
+        self.lock().slowed = Some(Instant::now() + time);
+    }
+
+    /// What is done now, for the words of a finding.
+    pub fn doing(&self, fault: &'static str) {
+        self.lock().last = Some((fault, Instant::now()));
+    }
+
     /// Makes a call and counts it. An error counts as a finding unless something was done to the robot a moment before or
     /// since; a result that is wrong always does.
     pub fn call<T: Debug>(
@@ -151,7 +165,20 @@ impl Figures {
             Ok(value) if is_right(&value) => {}
             Ok(value) => state.find(format!("{kind} gave {value:?}")),
             Err(_) if is_disturbed => state.errors += 1,
-            Err(error) => state.find(format!("{kind}: {error}, although nothing was done")),
+            Err(error)
+                if error.raw_os_error() == Some(libc::ETIMEDOUT)
+                    && state.slowed.is_some_and(|until| begun < until) =>
+            {
+                state.errors += 1;
+            }
+            Err(error) => {
+                let last = state.last.map_or_else(String::new, |(fault, when)| {
+                    format!("; the last thing was {fault}, {:.1?} before", begun - when)
+                });
+                state.find(format!(
+                    "{kind}: {error}, although nothing was killed{last}"
+                ));
+            }
         }
     }
 
@@ -203,7 +230,7 @@ impl Figures {
         }
         let _ = writeln!(
             out,
-            "  {:9}  errors while something was killed",
+            "  {:9}  errors while something was killed or traced",
             state.errors
         );
         let _ = writeln!(
