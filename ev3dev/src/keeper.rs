@@ -2,8 +2,8 @@
 //!
 //! The keeper mounts, starts the serving process and waits for a signal, an unmount or its end; then it unmounts, so that a
 //! kill of the serving process leaves no dead mount. If the keeper is killed, the kernel tells the serving process, which
-//! unmounts by itself. A serving process that somebody stops (SIGSTOP) and does not soon continue is killed. The serving process ends with its files of the tree open: the tree then brings to rest what
-//! it drove. So nothing has to be done for the motors here, whatever ends the view.
+//! unmounts by itself. A serving process that somebody stops (SIGSTOP) and does not soon continue is killed. The serving
+//! process ends with its files of the tree open: the tree then brings to rest what it drove. So nothing has to be done for the motors here, whatever ends the view.
 
 use crate::cli::SERVE;
 use crate::failure::Failure;

@@ -34,7 +34,7 @@ pub const REQUEST_BYTES_MAX: usize = 64 << 10;
 pub const UPLOADS_BYTES_MAX: usize = 2 * MESSAGE_BYTES_MAX;
 /// Bytes that wait for one browser, answers to its pings too: a little more than one message.
 pub const UNSENT_BYTES_MAX: usize = MESSAGE_BYTES_MAX + (1 << 20);
-/// Bytes that are read from a browser at once; each browser has so many for as long as it looks.
+/// Bytes that are read from a browser at once; a browser holds a buffer of this size while it is connected.
 pub const READ_BYTES: usize = 16 << 10;
 /// How long a thread for files waits for more work before it ends.
 pub const FILE_THREAD_IDLE_TIME: Duration = Duration::from_secs(2);

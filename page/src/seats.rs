@@ -21,7 +21,7 @@ pub struct Room {
     pub all: usize,
     /// Of these, for one computer.
     pub one: usize,
-    /// Beside these, for this machine, and as many more for who is in control.
+    /// Beside these, for this machine, and as many more for the computer in control.
     pub kept: usize,
     /// For a connection that is stuck in a message.
     pub stuck_time: Duration,
@@ -146,7 +146,7 @@ impl Table {
                 Stage::Good => (2, now, Duration::ZERO),
             };
             let count = self.count(entry.computer);
-            // Who has many more than the one that comes does not keep one waiting that does nothing.
+            // A computer that has many more places than the newcomer does not keep one that does nothing.
             let is_over = now.saturating_duration_since(since) >= patience || count > fair;
             let is_wanted = is_over && (!is_own || entry.computer == computer);
             is_wanted.then_some((class, Reverse(count), entry.id))

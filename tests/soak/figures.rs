@@ -4,7 +4,7 @@
 
 use crate::robot::Robot;
 use std::collections::BTreeMap;
-use std::fmt::{Debug, Write};
+use std::fmt::{self, Debug, Write};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -66,6 +66,27 @@ fn own_bytes(pid: u32) -> u64 {
         .find_map(|line| line.strip_prefix("RssAnon:"));
     let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
     kib.unwrap_or(0) * 1024
+}
+
+/// Why a run was not good.
+#[derive(Clone, Copy, Debug)]
+pub enum Bad {
+    /// So many things that must not be.
+    Findings(u64),
+    /// No motor came to rest, so nothing was shown.
+    NothingTried,
+    /// A motor ran on for so long.
+    RanOn(Duration),
+}
+
+impl fmt::Display for Bad {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Findings(count) => write!(out, "{count} findings"),
+            Self::NothingTried => out.write_str("nothing was tried: no motor came to rest"),
+            Self::RanOn(time) => write!(out, "a motor ran on for {time:?}"),
+        }
+    }
 }
 
 #[derive(Default)]
@@ -288,15 +309,18 @@ impl Figures {
     }
 
     /// Whether the run was good.
-    pub fn verdict(&self) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// Why it was not.
+    pub fn verdict(&self) -> Result<(), Bad> {
         let state = self.lock();
         let worst = state.rests.values().flatten().max().copied();
         if state.wrong_count > 0 {
-            return Err(format!("{} findings", state.wrong_count));
+            return Err(Bad::Findings(state.wrong_count));
         }
         match worst {
-            None => Err("nothing was tried: no motor came to rest".to_owned()),
-            Some(worst) if worst > REST_MOST => Err(format!("a motor ran on for {worst:?}")),
+            None => Err(Bad::NothingTried),
+            Some(worst) if worst > REST_MOST => Err(Bad::RanOn(worst)),
             Some(_) => Ok(()),
         }
     }

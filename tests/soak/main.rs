@@ -16,6 +16,7 @@ mod robot;
 
 use figures::{Figures, Footprint};
 use robot::Robot;
+use std::fmt;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -30,8 +31,26 @@ struct Arguments {
     seed: u32,
 }
 
+/// What is wrong with the command line.
+enum Usage {
+    Unknown(String),
+    /// The option wants a number from 1 to this one.
+    Number(String, u32),
+}
+
+impl fmt::Display for Usage {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(word) => {
+                write!(out, "usage: soak [--minutes N] [--seed N], not {word}")
+            }
+            Self::Number(option, most) => write!(out, "{option} wants a number from 1 to {most}"),
+        }
+    }
+}
+
 impl Arguments {
-    fn read() -> Result<Self, String> {
+    fn read() -> Result<Self, Usage> {
         let mut arguments = Self {
             minutes: 1,
             seed: std::process::id(),
@@ -43,12 +62,12 @@ impl Arguments {
                 let value = value.as_deref().and_then(|text| text.parse().ok());
                 value
                     .filter(|number| (1..=most).contains(number))
-                    .ok_or_else(|| format!("{word} wants a number from 1 to {most}"))
+                    .ok_or_else(|| Usage::Number(word.clone(), most))
             };
             match word.as_str() {
                 "--minutes" => arguments.minutes = number(24 * 60)?.into(),
                 "--seed" => arguments.seed = number(u32::MAX)?,
-                _ => return Err(format!("usage: soak [--minutes N] [--seed N], not {word}")),
+                _ => return Err(Usage::Unknown(word)),
             }
         }
         Ok(arguments)

@@ -3,8 +3,8 @@
 //!
 //! Owns the two hidden steps between a judge and such a program, which run under the name [`NAME`]: `outer` makes
 //! namespaces and waits, `inner` is the first process in them, gives up rights (`files`, `calls`) and becomes Python.
-//! `group` counts a program with all that it starts. `layer` has what may be missing, `words` what is told of it, `order` what the steps are told. Knows nothing of
-//! robots and of what is said to a program.
+//! `group` counts a program with all that it starts. `layer` has what may be missing, `words` what is told of it, `order`
+//! what the steps are told. Knows nothing of robots and of what is said to a program.
 
 mod calls;
 mod files;
@@ -39,7 +39,7 @@ pub(crate) use words::{lacks, required};
 pub const NAME: &str = "trik-sandbox";
 /// This program, whatever has happened to its file since it was started.
 const SELF: &str = "/proc/self/exe";
-/// Where Python is and what it reads to be itself, each with a zero behind it.
+/// Prints where Python is and the folders that it reads, each followed by a zero.
 const WHERE: &str = "import sys; print(*(p for p in [sys.executable, sys.base_prefix, sys.prefix, \
     sys.base_exec_prefix, sys.exec_prefix, *sys.path] if p.startswith('/') and p != '/'), sep='\\0', end='\\0')";
 
@@ -196,7 +196,7 @@ fn answer(command: &mut Command) -> io::Result<Output> {
         let (mut out, mut err) = (Vec::new(), Vec::new());
         let read = stdout.map_or(Ok(0), |pipe| pipe.take(most).read_to_end(&mut out));
         let read = read.and(stderr.map_or(Ok(0), |pipe| pipe.take(most).read_to_end(&mut err)));
-        // Nobody hears it who has not waited.
+        // After the time limit nobody receives it.
         let _ = send.send(read.map(|_| (out, err)));
     });
     let left = until.saturating_duration_since(Instant::now());

@@ -260,7 +260,7 @@ impl Parts {
         }
     }
 
-    /// Says so if programs are root; who has named root knows it.
+    /// Warns if programs are root and --user was not given.
     fn warn_of_root(&self) {
         if self.settings.user.is_none() && geteuid().is_root() {
             tracing::warn!(
@@ -377,7 +377,7 @@ impl Parts {
         }
     }
 
-    /// Begins to answer who asks for the status, and to look after the guardian.
+    /// Begins to answer requests for the status, and to look after the guardian.
     fn look_after(&self, ports: String, listener: UnixListener) {
         let (status, listener) = (Rc::new(self.status(ports)), Rc::new(listener));
         let answer = move || status::serve(status.clone(), listener.clone());

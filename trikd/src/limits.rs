@@ -90,7 +90,7 @@ pub const CONNECTIONS_OF_OTHERS: usize = 4;
 /// a person who has set the robot going comes back to it, however many others have come meanwhile.
 pub const CONNECTIONS_KEPT: usize = 8;
 /// Milliseconds that a connection keeps its place in the midst of a message while others wait for one: a network that loses a
-/// packet takes less, and who sends a byte now and then takes more.
+/// packet takes less, and a client that sends a byte now and then takes more.
 pub const STUCK_MS: u64 = 1_000;
 /// Connections to the control port beyond all places, which may say `stop` and ask what runs: so many that one which speaks at
 /// once is heard before thousands that come in the same second have pushed it out.

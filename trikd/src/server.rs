@@ -1,6 +1,6 @@
 //! Sockets: all listeners or none, who gets in, and which task serves whom.
 //!
-//! `lobby` is for who has no place. `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
+//! `lobby` is for clients without a place. `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
 //! are UDP, `page` is for browsers. What is said on a port is in `protocol`.
 
 // A request, a message or a command that is forgotten must not pass in silence.

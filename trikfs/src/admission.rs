@@ -1,4 +1,4 @@
-//! How much of the daemon each user may hold by open files: so many of them, and so much memory behind them.
+//! How much of the daemon each user may hold by open files: so many of them, and so much memory that they hold.
 //!
 //! Everything that an open file keeps in this process (a Lua state, a queue) is charged to the user who opened it and given
 //! back when the file is closed. The owner of the tree and root may hold everything; others together may hold half of it, and
@@ -24,7 +24,7 @@ pub struct Admission {
     table: Mutex<BTreeMap<u32, Holding>>,
 }
 
-/// Open files and the memory behind them.
+/// Open files and the memory that they hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Holding {
     files: usize,

@@ -94,6 +94,24 @@ fn while_its_guardian_is_stopped_the_daemon_lets_actuators_rest_and_has_it_go_on
 }
 
 #[test]
+fn a_terminal_does_not_stop_what_guards_motors() {
+    let Some(m) = robot() else { return };
+    let daemon = m.daemon();
+    // As Ctrl-Z does: to the whole group.
+    processes::signal_group(m.guardian(), Signal::SIGTSTP);
+    eventually("what it says", || {
+        m.complaints().contains("not stopped by Ctrl-Z")
+    });
+    assert!(!processes::is_stopped(m.guardian()) && !processes::is_stopped(daemon));
+    m.sh("echo 50 2 > motor/value");
+    assert_eq!(m.board().content("motor"), [50, 2]);
+    // The daemon lives on, and so does its guardian.
+    processes::signal(daemon, Signal::SIGKILL);
+    eventually("rest", || m.board().content("motor") == [0, 7]);
+    comes_back(&m, daemon);
+}
+
+#[test]
 fn a_cached_value_of_a_dead_daemon_is_not_served() {
     let Some(m) = robot() else { return };
     let open = m.open("gyro/bin_data");

@@ -144,7 +144,7 @@ const LOAD: u16 = 0x20;
 const JUMP_GE: u16 = 0x35;
 const RETURN: u16 = 0x06;
 
-/// Holds this process and all after it to the filter; whether the kernel does so. One who is alone starts no others.
+/// Holds this process and all after it to the filter; whether the kernel does so. If it is alone, it starts no other processes.
 pub(super) fn confine(is_alone: bool) -> bool {
     let Ok(arch) = TargetArch::try_from(std::env::consts::ARCH) else {
         return false;
@@ -219,7 +219,7 @@ fn rules(is_alone: bool) -> Result<BTreeMap<i64, Vec<SeccompRule>>, BackendError
         pairs.push(when(1, SeccompCmpOp::MaskedEq(KINDS), kind)?);
     }
     rules.insert(libc::SYS_socketpair, pairs);
-    // Who dies with the judge goes on doing so.
+    // A program that dies with the judge must not change that.
     let death = u64::from(libc::PR_SET_PDEATHSIG.cast_unsigned());
     rules.insert(libc::SYS_prctl, vec![when(0, SeccompCmpOp::Eq, death)?]);
     Ok(rules)
@@ -229,7 +229,7 @@ fn rules(is_alone: bool) -> Result<BTreeMap<i64, Vec<SeccompRule>>, BackendError
 mod tests {
     use super::*;
 
-    /// Most of these fail for who is nobody without any filter too, so no program can find out that they are filtered.
+    /// Most of these fail for an unprivileged user without any filter too, so a program cannot test the filter.
     #[test]
     fn each_call_that_is_named_has_a_rule() {
         let whole = rules(false).unwrap();

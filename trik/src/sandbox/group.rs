@@ -28,7 +28,7 @@ pub(crate) fn delegated() -> Option<PathBuf> {
     let place = own.lines().find_map(|line| line.strip_prefix(LINE))?;
     let bases = MOUNTS.iter().map(|mount| Path::new(mount).join(place));
     let base = bases.into_iter().find(|base| has_controllers(base))?;
-    // What a judge has left who was killed.
+    // What a judge that was killed has left.
     sweep_once(&base);
     let leaf = base.join(format!("{JUDGE}{}", std::process::id()));
     if divide(&base).is_ok() {
@@ -66,7 +66,7 @@ fn of(base: &Path, process: u32) -> PathBuf {
 pub(super) fn enter(base: &Path, memory: u64) -> io::Result<()> {
     let group = of(base, std::process::id());
     if group.exists() {
-        // Numbers of processes come again: somebody was killed before he could remove it.
+        // Process ids are used again: a judge was killed before it could remove its group.
         leave(base, std::process::id());
     }
     match fs::create_dir(&group) {

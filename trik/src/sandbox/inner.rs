@@ -150,7 +150,7 @@ fn take_limits(order: &Order) -> nix::Result<()> {
 /// example in a container that has no other, that is what is left of root.
 fn drop_rights() {
     for bit in 0..u64::BITS {
-        // Who has no rights may drop none, and no kernel knows all of them.
+        // A process without rights may not drop any, and no kernel knows all of them.
         let _ = remove_capability_from_bounding_set(CapabilitySet::from_bits_retain(1 << bit));
     }
     let none = CapabilitySet::empty();

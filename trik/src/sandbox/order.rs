@@ -24,7 +24,7 @@ pub(super) enum Step {
 #[derive(Clone, Debug, Default, Eq, PartialEq)]
 pub(super) struct Order {
     pub step: Step,
-    /// Process id of who has started the outer step.
+    /// Process id of the one that has started the outer step.
     pub parent: i32,
     /// The folders of the program; of several programs, where it is only asked what is missing.
     pub folders: Vec<PathBuf>,

@@ -127,7 +127,7 @@ fn separate(order: &mut Order) {
         true => CloneFlags::CLONE_NEWUSER,
         false => CloneFlags::empty(),
     };
-    // Afterwards nobody has his number any more.
+    // Afterwards the process has no user number of its own any more.
     order.threads = threads(uid, !user.is_empty());
     let is_whole = unshare(user | all).is_ok();
     order.is_mapped = !user.is_empty() && (is_whole || unshare(user).is_ok());

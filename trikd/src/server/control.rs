@@ -247,7 +247,7 @@ impl Handler for Session {
     }
 }
 
-/// Tells who has no place so, when it has had its time to say `stop`.
+/// Tells a client without a place so, after its time to say `stop`.
 async fn dismiss(outbox: &Outbox, full: Option<Full>) {
     if let Some(why) = full {
         tokio::time::sleep(Duration::from_millis(limits::LOBBY_MS)).await;

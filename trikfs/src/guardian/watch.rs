@@ -40,12 +40,14 @@ pub(super) struct Watch {
 impl Watch {
     /// Blocks the signals that end a program in this thread, and listens to them from here on.
     pub(super) fn new() -> io::Result<Self> {
-        // SIGCHLD comes also when the daemon is stopped.
+        // SIGCHLD comes also when the daemon is stopped. A terminal stops what runs in it (Ctrl-Z), and motors would go on:
+        // not this process, nor the daemon, which inherits that.
         let mask: SigSet = [
             Signal::SIGTERM,
             Signal::SIGINT,
             Signal::SIGHUP,
             Signal::SIGCHLD,
+            Signal::SIGTSTP,
         ]
         .into_iter()
         .collect();
@@ -118,7 +120,13 @@ impl Watch {
     fn asks_to_end(&self) -> io::Result<bool> {
         let mut asks = false;
         while let Some(info) = self.signals.read_signal()? {
-            asks |= i32::try_from(info.ssi_signo) != Ok(Signal::SIGCHLD as i32);
+            match i32::try_from(info.ssi_signo).map(Signal::try_from) {
+                Ok(Ok(Signal::SIGCHLD)) => {}
+                Ok(Ok(Signal::SIGTSTP)) => super::complain(
+                    "what guards motors is not stopped by Ctrl-Z: end it with Ctrl-C",
+                ),
+                Ok(_) | Err(_) => asks = true,
+            }
         }
         Ok(asks)
     }

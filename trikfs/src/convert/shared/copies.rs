@@ -89,7 +89,7 @@ fn is_whole(file: &Path) -> bool {
     read.is_ok() && file.file_name() == Some(OsStr::new(&super::copy_name(&bytes)))
 }
 
-/// As bytes: name and path in turn, each with a zero behind it.
+/// As bytes: name and path in turn, each followed by a zero.
 pub fn encode(copies: &CopyNames) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (path, name) in copies {
