@@ -76,7 +76,7 @@ export class Desk {
     if (!robot.isConnected) return words.connecting;
     if (robot.absence !== '') return words.robotAbsent(robot.absence);
     if (!robot.mayDrive) return words.onlyLook;
-    if (!robot.isInControl && robot.holder !== '') return words.otherControl(robot.holder);
+    if (robot.isOthers) return words.otherControl(robot.holder);
     return '';
   }
 

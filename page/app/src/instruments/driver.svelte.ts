@@ -55,10 +55,16 @@ export class Driver {
     if (!held) return;
     this.#held.delete(hand);
     for (const path of held.keys()) this.#elsewhere.released(path);
-    // Without control there is no order but the stop, and what was held must not go on.
-    if (this.desk.why !== '' && held.size > 0) this.desk.robot.stop();
-    else for (const path of held.keys()) this.desk.rest(path);
+    this.#rest(held);
     this.#show(hand, undefined);
+  }
+
+  #rest(held: Map<string, string>): void {
+    const { desk } = this;
+    if (desk.why === '') for (const path of held.keys()) desk.rest(path);
+    // There is no order but the stop, and what was held must not go on. Who has lost the control has been brought to rest by the
+    // robot already: a stop from here would halt whatever the next one drives.
+    else if (!desk.robot.isOthers && held.size > 0) desk.robot.stop();
   }
 
   /** Everything rests, and nothing that is still held counts. */

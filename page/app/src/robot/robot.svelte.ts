@@ -131,10 +131,15 @@ export class Robot {
     return this.#nodes;
   }
 
+  /** Another browser is in control. */
+  get isOthers(): boolean {
+    return !this.isInControl && this.holder !== '';
+  }
+
   /** Something goes to the robot that needs control. */
   get mayAct(): boolean {
     const isThere = this.isConnected && !this.absence;
-    return isThere && this.mayDrive && (this.isInControl || !this.holder) && !this.past;
+    return isThere && this.mayDrive && !this.isOthers && !this.past;
   }
 
   /** All views show this moment; undefined: the robot as it is now. */
