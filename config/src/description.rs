@@ -82,6 +82,8 @@ pub struct NodeDescription {
     pub attributes: Vec<NodeDescription>,
     /// `share` as written; absent means "by kind of source".
     pub share: Option<bool>,
+    /// Whether its shared libraries and inline C run in a process of their own.
+    pub isolate: bool,
     /// Equal for equal descriptions: plain fields, stripped bytecode, upvalues (attributes excluded, they have their own).
     pub fingerprint: u128,
 }
@@ -89,9 +91,17 @@ pub struct NodeDescription {
 impl NodeDescription {
     /// True if any stage of either direction is a Lua function.
     pub fn uses_lua(&self) -> bool {
-        let lua =
-            |stages: &[StageDescription]| stages.iter().any(|s| matches!(s.kind, StageKind::Lua));
-        lua(&self.converter) || self.write_converter.as_deref().is_some_and(lua)
+        self.stages().any(|stage| !stage.kind.is_machine_code())
+    }
+
+    /// True if any stage of either direction is a shared library or inline C.
+    pub fn uses_machine_code(&self) -> bool {
+        self.stages().any(|stage| stage.kind.is_machine_code())
+    }
+
+    fn stages(&self) -> impl Iterator<Item = &StageDescription> {
+        let write = self.write_converter.iter().flatten();
+        self.converter.iter().chain(write)
     }
 
     /// Bytes of a tuple before and after the conversion in the direction of writing.
@@ -203,4 +213,14 @@ pub enum StageKind {
         /// The source text.
         code: String,
     },
+}
+
+impl StageKind {
+    /// Whether it is code of the processor, which nothing holds back but another process.
+    pub fn is_machine_code(&self) -> bool {
+        match self {
+            Self::Lua => false,
+            Self::Library { .. } | Self::InlineC { .. } => true,
+        }
+    }
 }

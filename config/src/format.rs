@@ -2,6 +2,7 @@
 //!
 //! Owns the text of the `value` files. Little endian unless a field's type is preceded by `>`. Pure.
 
+mod bound;
 mod error;
 
 pub use error::{EncodeError, RenderError};

@@ -21,6 +21,8 @@ mod converters {
     mod hostile;
     /// C source in the configuration.
     mod inline_c;
+    /// Machine code in processes of their own.
+    mod isolated;
     /// Projects for authors, from the first command to the mounted node.
     mod kit;
     /// Functions of the configuration, each open file with a state of its own.
@@ -87,6 +89,8 @@ mod mount {
     mod log;
     /// Names.
     mod lookup;
+    /// A control group that allows less memory than the machine has.
+    mod memory_group;
     /// Who may open what, and what opening may cost.
     mod open;
     /// Newest values without a round trip.
@@ -103,6 +107,8 @@ mod mount {
     mod readdir;
     /// A new configuration under open files.
     mod reload;
+    /// What is taken away from under a tree that is used.
+    mod removed;
     /// Recordings and made-up bytes.
     mod replay;
     /// Every kind of actuator comes to rest.

@@ -10,6 +10,7 @@ mod ratios {
     pub mod bus_peer;
     pub mod events;
     pub mod idle;
+    pub mod isolated;
     pub mod measure;
     pub mod newest;
     pub mod open;
@@ -24,7 +25,8 @@ mod ratios {
 
 use ratios::measure::Plan;
 use ratios::{
-    bulk, bus, events, idle, newest, open, peers, reads, reload, samples, states, together, torn,
+    bulk, bus, events, idle, isolated, newest, open, peers, reads, reload, samples, states,
+    together, torn,
 };
 
 /// A section's name and what it runs.
@@ -33,7 +35,7 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 11] = [
+const SECTIONS: [Section; 12] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
@@ -41,6 +43,7 @@ const SECTIONS: [Section; 11] = [
     ("states", states::run),
     ("reload", reload::run),
     ("bulk", bulk::run),
+    ("isolated", isolated::run),
     ("together", together::run),
     ("bus", bus::run),
     ("samples", samples::run),

@@ -55,7 +55,7 @@ pub struct Place {
 }
 
 impl Admission {
-    /// For the tree of `owner` on a machine with so much memory.
+    /// For the tree of `owner` where there is so much memory.
     pub fn new(owner: u32, machine_bytes: u64) -> Arc<Self> {
         let part = machine_bytes / limits::OPEN_MEMORY_PART;
         let bytes = usize::try_from(part).unwrap_or(usize::MAX);
@@ -164,11 +164,6 @@ impl Drop for Place {
     }
 }
 
-/// Bytes of memory of this machine; if it does not say, as much as the smallest board has.
-pub fn machine_bytes() -> u64 {
-    nix::sys::sysinfo::sysinfo().map_or(limits::MACHINE_BYTES_LEAST, |found| found.ram_total())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -244,10 +239,5 @@ mod tests {
         assert_eq!(lock(&admission.table)[&NOBODY], before);
         drop(place);
         assert_eq!(*lock(&admission.table), BTreeMap::new());
-    }
-
-    #[test]
-    fn the_machine_tells_its_memory() {
-        assert!(machine_bytes() >= limits::MACHINE_BYTES_LEAST / 4);
     }
 }

@@ -15,6 +15,7 @@ mod run;
 pub use paths::find_shipped;
 
 use crate::check::SearchPaths;
+use crate::convert::isolated;
 use crate::daemon::Transport;
 use crate::failure::Failure;
 use crate::guardian::inherit::Handover;
@@ -98,6 +99,11 @@ enum Command {
     },
     #[command(hide = true)]
     Serve(ServeArgs),
+    #[command(hide = true, name = isolated::COMMAND)]
+    Isolated {
+        /// The process that has started this one.
+        daemon: i32,
+    },
 }
 
 /// Options that say what is served, for the guardian and its daemon alike.
@@ -221,6 +227,7 @@ fn perform(command: Command) -> Result<(), Failure> {
     match command {
         Command::Mount(args) => run::mount(args),
         Command::Serve(args) => run::serve(args),
+        Command::Isolated { daemon } => isolated::inner::run(daemon),
         Command::Check(args) => check(args),
         Command::Convert(args) => author::convert(&args),
         Command::NewConverter(args) => author::new_converter(&args),

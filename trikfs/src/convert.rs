@@ -4,19 +4,22 @@
 //! crate runs Lua or loads machine code.
 
 pub mod inline_c;
+pub mod isolated;
 pub mod lua;
+mod plan;
 pub mod shared;
 
 use crate::errno::Error;
 use crate::events::lock;
-use config::description::{NodeDescription, StageDescription, StageKind};
+use config::description::NodeDescription;
 use config::problem::Problem;
 use config::program::{StageId, Vm};
 use converter::{Conversion, Direction};
-use inline_c::Compiler;
+use isolated::IsolatedStage;
 use lua::StatePool;
+use plan::Plan;
 use shared::copies::Copies;
-use shared::{Cache, Library, NativeStage};
+use shared::{Cache, NativeStage};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -35,14 +38,6 @@ pub struct Recipe {
     read: Vec<Plan>,
     write: Option<Vec<Plan>>,
     lua: Mutex<Option<Arc<StatePool>>>,
-}
-
-/// One stage that is ready to be instantiated.
-struct Plan {
-    /// Absent for a Lua function, which lives in the open file's own state.
-    library: Option<Library>,
-    input_size: usize,
-    output_size: usize,
 }
 
 /// Params by name.
@@ -69,12 +64,7 @@ impl Recipe {
         workshop: &Workshop<'_>,
         lua: Option<Arc<StatePool>>,
     ) -> Result<Self, Problem> {
-        let plans = |stages: &[StageDescription], direction| -> Result<Vec<Plan>, Problem> {
-            stages
-                .iter()
-                .map(|stage| plan(description, stage, direction, workshop))
-                .collect()
-        };
+        let (read, write) = plan::plans(description, workshop)?;
         Ok(Self {
             node: description.path.clone(),
             params: Mutex::new(Arc::new(description.params.clone())),
@@ -82,12 +72,8 @@ impl Recipe {
             memory_kb: description.memory_kb,
             budget_us: description.budget_us,
             tuple_size: description.input_tuple_size,
-            read: plans(&description.converter, Direction::Read)?,
-            write: description
-                .write_converter
-                .as_deref()
-                .map(|stages| plans(stages, Direction::Write))
-                .transpose()?,
+            read,
+            write,
             lua: Mutex::new(lua.filter(|_| description.uses_lua())),
         })
     }
@@ -211,7 +197,7 @@ impl Recipe {
         for (plan, stage) in plans.iter().zip(stages) {
             if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                stage.code = Code::Native(library.open(&info).map_err(unusable)?);
+                stage.code = library.open(&info).map_err(unusable)?;
             }
         }
         Ok(())
@@ -251,7 +237,7 @@ impl Recipe {
             let (input_size, output_size) = (plan.input_size, plan.output_size);
             let code = if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                Code::Native(library.open(&info).map_err(unusable)?)
+                library.open(&info).map_err(unusable)?
             } else {
                 let Some(vm) = vm.as_mut() else {
                     return Err(Error::Internal(format!(
@@ -277,54 +263,6 @@ impl Recipe {
 /// A converter that cannot be opened.
 fn unusable(why: impl Display) -> Error {
     Error::Converter(why.to_string())
-}
-
-fn plan(
-    description: &NodeDescription,
-    stage: &StageDescription,
-    direction: Direction,
-    workshop: &Workshop<'_>,
-) -> Result<Plan, Problem> {
-    let node = &description.path;
-    let refused = |reason: &dyn Display| {
-        Problem::new(
-            stage.place.file.clone(),
-            stage.place.line,
-            format!("node {node}: {reason}"),
-        )
-    };
-    let library = match &stage.kind {
-        StageKind::Lua => None,
-        StageKind::Library { path, name } => {
-            let copied = workshop.copies.of(path, workshop.cache);
-            let loaded =
-                copied.and_then(|copy| Library::load_copy_of(path, &copy, name.as_deref()));
-            Some(loaded.map_err(|error| refused(&error))?)
-        }
-        StageKind::InlineC { code } => {
-            let tell = |text: &str| (workshop.progress)(&format!("node {node}: {text}"));
-            let path = Compiler::compile_with_any(code, &stage.place, workshop.cache, &tell)?;
-            let loaded = Library::load(&path, None, workshop.cache);
-            Some(loaded.map_err(|error| refused(&error))?)
-        }
-    };
-    if let Some(library) = &library {
-        // What it would refuse to every open file, sizes and parameters, it refuses now.
-        let info = shared::OpenInfo {
-            direction,
-            input_size: stage.input_size,
-            output_size: stage.output_size,
-            node,
-            params: &description.params,
-            log: Arc::new(|_| {}),
-        };
-        library.open(&info).map_err(|fault| refused(&fault))?;
-    }
-    Ok(Plan {
-        library,
-        input_size: stage.input_size,
-        output_size: stage.output_size,
-    })
 }
 
 /// The stages of one open file, both directions, with their state.
@@ -372,6 +310,7 @@ struct Stage {
 enum Code {
     Lua(StageId),
     Native(NativeStage),
+    Isolated(IsolatedStage),
 }
 
 /// What became of a run of tuples.
@@ -491,6 +430,7 @@ impl Stage {
     fn convert_many(&mut self, vm: Option<&mut Vm>, input: &[u8], output: &mut [u8]) -> Batch {
         let (consumed, produced, fault) = match (&mut self.code, vm) {
             (Code::Native(native), _) => native.convert_many(input, output),
+            (Code::Isolated(isolated), _) => isolated.convert_many(input, output),
             (Code::Lua(stage), Some(vm)) => vm.convert_many(*stage, input, output),
             (Code::Lua(_), None) => (0, 0, Some(NO_STATE.into())),
         };
@@ -511,6 +451,9 @@ impl Code {
     ) -> Result<Conversion, Error> {
         match (self, vm) {
             (Self::Native(native), _) => native
+                .convert(input, output)
+                .map_err(|fault| Error::of_converter(&fault)),
+            (Self::Isolated(isolated), _) => isolated
                 .convert(input, output)
                 .map_err(|fault| Error::of_converter(&fault)),
             (Self::Lua(stage), Some(vm)) => vm

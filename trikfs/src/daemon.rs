@@ -4,7 +4,7 @@
 //! actuators come to rest before the process ends. The guardian, which is another process, mounts before and unmounts after.
 //! Knows no request of the kernel and no kind of device.
 
-use crate::admission::{Admission, machine_bytes};
+use crate::admission::Admission;
 use crate::convert::shared::Cache;
 use crate::convert::shared::copies::CopyNames;
 use crate::engine::Engine;
@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::fs::{Forest, Fs, OpenFiles};
 use crate::guardian::ledger::Ledger;
 use crate::guardian::oversight::Oversight;
+use crate::memory;
 use crate::node::{Node, rest_all};
 use crate::reload::{Reloader, Setup};
 use crate::sample_bus::Readers;
@@ -126,7 +127,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         engine.clone(),
         forest.clone(),
         files,
-        Admission::new(options.owner.uid, machine_bytes()),
+        Admission::new(options.owner.uid, memory::bytes()),
         reloader.clone(),
     ));
     serve(options.device, fs, options.transport, end)?;

@@ -183,7 +183,11 @@ impl Fs {
             if write {
                 return Err(Error::AccessDenied);
             }
-            return Ok((Arc::new(TextFile::new(make)), Access::Direct, false));
+            let mut file = TextFile::new(make);
+            if matches!(kind, Kind::Status) {
+                file = file.long(self.forest.tree().nodes().len() * limits::STATUS_LINE_BYTES);
+            }
+            return Ok((Arc::new(file), Access::Direct, false));
         }
         match kind {
             Kind::Directory => Err(Error::IsADirectory),

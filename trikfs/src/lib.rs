@@ -29,6 +29,7 @@ pub mod latch;
 pub mod lease;
 pub mod limits;
 pub mod log;
+mod memory;
 pub mod mount;
 pub mod newest;
 pub mod node;

@@ -48,6 +48,10 @@ pub const OPEN_PART_OF_OTHERS: usize = 2;
 pub const OPEN_PART_OF_ONE: usize = 4;
 /// Bytes that an open file takes without what is behind it.
 pub const OPEN_FILE_BYTES: usize = 1024;
+/// Bytes of the text of one number of a tuple, which an open `valueN` keeps.
+pub const NUMBER_TEXT_BYTES: usize = 32;
+/// Bytes that `status` has for each node, about, which its open file keeps.
+pub const STATUS_LINE_BYTES: usize = 64;
 /// Bytes of memory of the smallest board.
 pub const MACHINE_BYTES_LEAST: u64 = 192 << 20;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
@@ -164,6 +168,31 @@ pub const COMPILE_SECONDS_MAX: u32 = 30;
 pub const COMPILE_OUTPUT_BYTES_MAX: usize = 64 << 10;
 /// KiB of memory that each process of a compiler may take.
 pub const COMPILE_MEMORY_KB_MAX: u32 = 512 << 10;
+/// How long an isolated converter may take for one tuple, beside the node's `budget_us`. Less than what makes a node count as
+/// stuck ([`STUCK_MS`]): its callers get their error before.
+pub const ISOLATED_PATIENCE: Duration = Duration::from_secs(1);
+/// How often that time may pass during a batch that goes on.
+pub const ISOLATED_BATCH_WAITS: u32 = 10;
+/// How long its process may take to load a library.
+pub const ISOLATED_LOAD_PATIENCE: Duration = Duration::from_secs(5);
+/// How often it is looked whether a process that has not answered yet is dead.
+pub const ISOLATED_LOOK: Duration = Duration::from_millis(5);
+/// Bytes of tuples in the memory that it shares with the daemon, in each direction.
+pub const ISOLATED_BYTES: usize = 128 << 10;
+/// Bytes up to which a single tuple travels in a message.
+pub const ISOLATED_TUPLE_BYTES: usize = 4 << 10;
+/// Bytes of one message: 256 params with their names are the longest.
+pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
+/// Lines that a converter may log while it is opened.
+pub const ISOLATED_LOG_LINES: usize = 16;
+/// Bytes of memory that all its states may take together.
+pub const ISOLATED_DATA_BYTES: u64 = 64 << 20;
+/// Pause before another process is started after a second death; it doubles with each,
+pub const ISOLATED_PAUSE: Duration = Duration::from_millis(100);
+/// ... up to this.
+pub const ISOLATED_PAUSE_MAX: Duration = Duration::from_secs(2);
+/// A process that has lived so long is replaced at once.
+pub const ISOLATED_CALM: Duration = Duration::from_secs(10);
 /// Crashes within [`CRASH_WINDOW_SECONDS`] after which the filesystem is not started again.
 pub const CRASHES_MAX: usize = 5;
 /// Seconds that a crash is remembered.

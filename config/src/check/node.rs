@@ -16,7 +16,7 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 27] = [
+pub(super) const FIELDS: [&str; 28] = [
     "about",
     "ages",
     "always",
@@ -28,6 +28,7 @@ pub(super) const FIELDS: [&str; 27] = [
     "input_format",
     "input_tuple_size",
     "interval",
+    "isolate",
     "max_age_ms",
     "memory_kb",
     "mode",
@@ -118,11 +119,13 @@ impl NodeFields<'_, '_> {
             param_ranges,
             attributes: Vec::new(),
             share: self.boolean("share")?,
+            isolate: self.boolean("isolate")?.unwrap_or(false),
             fingerprint: 0,
         };
         self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
         self.check_read_back(&node, read_only)?;
+        self.check_isolate(&node)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
     }
@@ -343,6 +346,15 @@ impl NodeFields<'_, '_> {
         Ok(())
     }
 
+    /// There is machine code that a process of its own can hold.
+    fn check_isolate(&self, node: &NodeDescription) -> Result<(), Problem> {
+        if node.isolate && !node.uses_machine_code() {
+            let reason = "isolate is for shared libraries and inline C: a converter in Lua cannot harm others anyway";
+            return Err(self.problem("isolate", reason));
+        }
+        Ok(())
+    }
+
     /// The rest value can be written: the source takes writes, and the numbers fit the tuple that a program writes.
     fn check_rest(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
         let Some(rest) = &node.rest else {
@@ -395,6 +407,7 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         &node.rest,
         node.share,
         node.read_back,
+        node.isolate,
     );
     let limits = (
         node.timeout_ms,

@@ -163,6 +163,24 @@ fn sizes_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn only_machine_code_is_isolated() {
+    let field = |text: &str| {
+        refused(&format!(
+            "src = '/d', input_tuple_size = 1, output_tuple_size = 1,\n{text}"
+        ))
+    };
+    assert_eq!(
+        field("isolate = 1, converter = { code = 'x' }"),
+        "robot.lua:3: x: isolate must be true or false, not a number"
+    );
+    let reason = "isolate is for shared libraries and inline C: a converter in Lua cannot harm others anyway";
+    for converter in ["", "converter = id_create(1)"] {
+        let found = field(&format!("isolate = true, {converter}"));
+        assert_eq!(found, format!("robot.lua:3: x: {reason}"));
+    }
+}
+
+#[test]
 fn pace_and_limits_are_checked() {
     let field = |text: &str| refused(&format!("src = '/d', input_tuple_size = 1,\n{text}"));
     assert_eq!(

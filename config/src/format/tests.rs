@@ -186,6 +186,39 @@ fn text_that_does_not_fit_is_refused_with_its_reason() {
 }
 
 #[test]
+fn no_text_of_a_tuple_is_longer_than_its_bound() {
+    let numbers = [
+        ("u8", vec![255]),
+        ("i8", vec![0x80]),
+        ("i16", i16::MIN.to_le_bytes().to_vec()),
+        ("u16", u16::MAX.to_le_bytes().to_vec()),
+        ("i32", i32::MIN.to_le_bytes().to_vec()),
+        ("u32", u32::MAX.to_le_bytes().to_vec()),
+        ("i64", i64::MIN.to_le_bytes().to_vec()),
+        ("u64", u64::MAX.to_le_bytes().to_vec()),
+        ("f32", (-f32::MIN_POSITIVE).to_le_bytes().to_vec()),
+        ("f32", (-0.000_012_345_678_f32).to_le_bytes().to_vec()),
+        ("f64", (-f64::MIN_POSITIVE).to_le_bytes().to_vec()),
+        (
+            "f64",
+            (-0.000_012_345_678_901_234_567_f64).to_le_bytes().to_vec(),
+        ),
+    ];
+    for (word, bytes) in numbers {
+        let format = Format::parse(&format!("{word} a, {word} b")).unwrap();
+        let mut out = String::new();
+        format.render(&bytes.repeat(2), &mut out).unwrap();
+        let most = format.text_bytes_max();
+        assert!(
+            out.len() < most && most <= out.len() + 8,
+            "{word}: {out} of {most}"
+        );
+    }
+    assert_eq!(Format::bytes(3).text_bytes_max(), "255 255 255\n".len());
+    assert_eq!(Format::parse("text 9").unwrap().text_bytes_max(), 10);
+}
+
+#[test]
 fn plain_bytes_have_no_names() {
     let format = Format::bytes(3);
     let mut out = String::new();

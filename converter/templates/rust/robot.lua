@@ -9,6 +9,8 @@ trikfs = {
     output_tuple_size = 4,
     format = 'i32 millivolts',
     units = 'mV',
+    -- In a process of its own: a crash costs this node an error, and fault says what it died of.
+    isolate = true,
     converter = 'target/release/libbattery_mean.so#battery_mean',
     params = { count = 16 },
   },

@@ -96,7 +96,7 @@ fn reloading_does_not_make_the_daemon_grow() {
 
 /// Programs of nobody that open a file until it is refused, and keep what they have until they hear from their parent. A
 /// process may have few files open, so there are several.
-const GREEDY: &str = "
+pub(super) const GREEDY: &str = "
 resource.setrlimit(resource.RLIMIT_NOFILE, (4096, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
 def greedy(path):
     number, count = 0, 0
@@ -170,4 +170,44 @@ end()
         log.contains("open: too many open files: user 65534 may have 16384 files open: close some"),
         "{log}"
     );
+}
+
+#[test]
+fn texts_of_large_tuples_that_a_user_keeps_open_are_charged() {
+    const LARGE: usize = 1 << 20;
+    let board = Board::new();
+    board.file("in", vec![255; LARGE]);
+    let config = format!("trikfs = {{ n = {{ src = '$DIR/in', input_tuple_size = {LARGE} }} }}");
+    let Some(m) = mount_with(board, &config, &["--allow-other"]) else {
+        return;
+    };
+    let daemon = m.daemon();
+    for file in ["value", "bin_data", "device"] {
+        m.python(&format!(
+            "
+def resident():
+    return int(open('/proc/{daemon}/statm').read().split()[1]) * resource.getpagesize()
+before = resident()
+heard, go = os.pipe()
+told, tell = os.pipe()
+if os.fork() == 0:
+    os.close(go), os.setgroups([]), os.setgid(65534), os.setuid(65534)
+    files = []
+    try:
+        while len(files) < 240:
+            files.append(os.open('n/{file}', os.O_RDONLY))
+            os.read(files[-1], 1)
+    except OSError as error:
+        assert error.errno == errno.ENOMEM, error
+    os.write(tell, b'%d' % len(files))
+    os.read(heard, 1)
+    os._exit(0)
+count = int(os.read(told, 100))
+# A quarter of at most 512 MiB, and what the allocator adds.
+assert count >= 1 and resident() - before < 192 << 20, (count, before, resident())
+assert len(os.read(open_ro(M + '/n/bin_data'), 9)) == 9
+os.close(go)
+"
+        ));
+    }
 }

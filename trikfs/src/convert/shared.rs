@@ -48,6 +48,27 @@ pub struct OpenInfo<'a> {
     pub log: Arc<dyn Fn(&str) + Send + Sync>,
 }
 
+/// What messages call compiled source.
+pub(super) const INLINE: &str = "inline C";
+
+/// What messages call a library: as a whole, and in front of what a converter of it says.
+pub(super) fn shown(path: &Path) -> (String, String) {
+    let shown = path.display().to_string();
+    let short = path
+        .file_name()
+        .map(|file| file.to_string_lossy().into_owned());
+    let short = short.unwrap_or_else(|| shown.clone());
+    (shown, short)
+}
+
+/// What messages call one of its converters.
+pub(super) fn label(short: &str, name: Option<&str>) -> Arc<str> {
+    match name {
+        Some(name) => format!("{short}#{name}").into(),
+        None => short.into(),
+    }
+}
+
 /// One converter of a loaded library; cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Library {
@@ -65,7 +86,7 @@ impl Library {
     /// What is wrong, with the path and, for a name that is not there, all that are.
     pub fn load(path: &Path, name: Option<&str>, cache: &Cache) -> Result<Self, LibraryError> {
         if cache.holds(path) {
-            return Self::load_copy(path, "inline C", "inline C", name);
+            return Self::load_copy(path, INLINE, INLINE, name);
         }
         Self::load_copy_of(path, &copy(path, cache)?, name)
     }
@@ -79,15 +100,12 @@ impl Library {
         copy: &Path,
         name: Option<&str>,
     ) -> Result<Self, LibraryError> {
-        let shown = path.display().to_string();
-        let short = path
-            .file_name()
-            .map(|file| file.to_string_lossy().into_owned());
-        Self::load_copy(copy, &shown, short.as_deref().unwrap_or(&shown), name)
+        let (shown, short) = shown(path);
+        Self::load_copy(copy, &shown, &short, name)
     }
 
     /// From a file of the cache, which the user knows as `shown`, or as `short` in front of a message.
-    fn load_copy(
+    pub(super) fn load_copy(
         file: &Path,
         shown: &str,
         short: &str,
@@ -99,13 +117,9 @@ impl Library {
                 shown: shown.to_owned(),
                 why,
             })?;
-        let label = match name {
-            Some(name) => format!("{short}#{name}"),
-            None => short.to_owned(),
-        };
         Ok(Self {
             descriptor: Arc::new(descriptor),
-            label: label.into(),
+            label: label(short, name),
         })
     }
 
@@ -180,6 +194,18 @@ impl NativeStage {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Fault>) {
+        self.convert_watched(input, output, |_, _| {})
+    }
+
+    /// As [`convert_many`](Self::convert_many); `watch` hears before each tuple and after the last one how many were taken and
+    /// made so far.
+    #[inline]
+    pub(super) fn convert_watched(
+        &mut self,
+        input: &[u8],
+        output: &mut [u8],
+        watch: impl Fn(usize, usize),
+    ) -> (usize, usize, Option<Fault>) {
         let (mut taken, mut made) = (0, 0);
         let mut room = output.chunks_exact_mut(self.output_size);
         let mut next = room.next();
@@ -187,6 +213,7 @@ impl NativeStage {
             let Some(slot) = next.as_deref_mut() else {
                 break;
             };
+            watch(taken, made);
             taken += 1;
             match self.instance.convert(tuple, slot) {
                 Ok(Conversion::Produced) => {
@@ -197,7 +224,13 @@ impl NativeStage {
                 Err(fault) => return (taken, made, Some(labelled(&self.label, &fault))),
             }
         }
+        watch(taken, made);
         (taken, made, None)
+    }
+
+    /// Bytes of every output tuple.
+    pub(super) fn output_size(&self) -> usize {
+        self.output_size
     }
 }
 

@@ -15,6 +15,8 @@ use std::sync::{Arc, Mutex};
 pub struct TextFile {
     make: Box<dyn Fn() -> String + Send + Sync>,
     shown: Mutex<String>,
+    /// Bytes of the text, about.
+    bytes: usize,
 }
 
 impl TextFile {
@@ -23,7 +25,15 @@ impl TextFile {
         Self {
             make: Box::new(make),
             shown: Mutex::default(),
+            bytes: 0,
         }
+    }
+
+    /// The same, with a text that is long: this is about how long.
+    #[must_use]
+    pub fn long(mut self, bytes: usize) -> Self {
+        self.bytes = bytes;
+        self
     }
 
     fn copy(&self, offset: u64, out: &mut [u8]) -> usize {
@@ -38,6 +48,10 @@ impl TextFile {
 impl OpenFile for TextFile {
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
         Ok(Outcome::Done(self.copy(request.offset, out)))
+    }
+
+    fn held_bytes(&self) -> usize {
+        self.bytes
     }
 }
 

@@ -201,11 +201,15 @@ impl OpenFile for DeviceFile {
     }
 
     fn held_bytes(&self) -> usize {
-        let queue = match self.source.get() {
+        let description = &self.node.description;
+        let (before, after) = (description.input_tuple_size, description.output_tuple_size);
+        let held = match self.source.get() {
             Some(Source::Stream(reader)) => reader.queue_bytes(),
-            Some(Source::State(_)) | None => 0,
+            // A tuple of the device, and what a read that ended inside the converted one has left.
+            Some(Source::State(_)) => before + after,
+            None => 0,
         };
-        self.pipeline_bytes + queue
+        self.pipeline_bytes + held
     }
 
     fn flush(&self, _id: RequestId, caller: Caller) -> Result<Outcome, Error> {

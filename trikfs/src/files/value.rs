@@ -50,7 +50,7 @@ pub struct ValueFile {
 #[derive(Default)]
 struct Shown {
     tuple: Vec<u8>,
-    content: Vec<u8>,
+    /// Of a view as text.
     text: String,
     seen: u32,
     sizes: Vec<(RequestId, usize)>,
@@ -112,11 +112,7 @@ impl ValueFile {
     /// Renders the newest sample into `shown`. False: there is none yet.
     fn show(&self, shown: &mut Shown) -> Result<bool, Error> {
         let Shown {
-            tuple,
-            content,
-            text,
-            seen,
-            ..
+            tuple, text, seen, ..
         } = shown;
         let got = self.node.sampling.newest.get(tuple);
         if got.is_err() {
@@ -124,20 +120,27 @@ impl ValueFile {
         }
         let Some(events) = got? else { return Ok(false) };
         *seen = events;
-        content.clear();
         text.clear();
         let rendered = match self.view {
-            View::Bytes => {
-                content.extend_from_slice(tuple);
-                return Ok(true);
-            }
+            View::Bytes => return Ok(true),
             View::Text => self.node.format.render(tuple, text),
             View::Field(index) => self.node.format.render_field(index, tuple, text),
         };
-        rendered.map_err(|why| Error::Converter(why.to_string()))?;
-        content.extend_from_slice(text.as_bytes());
-        content.push(b'\n');
+        if let Err(why) = rendered {
+            // A part of a text is none.
+            text.clear();
+            return Err(Error::Converter(why.to_string()));
+        }
+        text.push('\n');
         Ok(true)
+    }
+
+    /// What a reader gets.
+    fn content<'a>(&self, shown: &'a Shown) -> &'a [u8] {
+        match self.view {
+            View::Bytes => &shown.tuple,
+            View::Text | View::Field(_) => shown.text.as_bytes(),
+        }
     }
 
     fn tuple_of(&self, data: &[u8]) -> Result<Vec<u8>, Error> {
@@ -180,7 +183,7 @@ impl OpenFile for ValueFile {
         }
         if request.offset > 0 {
             let shown = lock(&self.shown);
-            let n = copy_at(&shown.content, request.offset, out);
+            let n = copy_at(self.content(&shown), request.offset, out);
             return Ok(Outcome::Done(n));
         }
         // Taking a sample may answer other reads of this file: not with its lock held.
@@ -188,7 +191,7 @@ impl OpenFile for ValueFile {
         let mut shown = lock(&self.shown);
         if self.show(&mut shown)? {
             self.node.stats.reads.add(1);
-            return Ok(Outcome::Done(copy_at(&shown.content, 0, out)));
+            return Ok(Outcome::Done(copy_at(self.content(&shown), 0, out)));
         }
         if request.nonblocking {
             return Err(Error::WouldBlock);
@@ -252,6 +255,19 @@ impl OpenFile for ValueFile {
         Ok(Outcome::Done(0))
     }
 
+    fn held_bytes(&self) -> usize {
+        if !self.reads {
+            return 0;
+        }
+        let format = &self.node.format;
+        let text = match self.view {
+            View::Bytes => 0,
+            View::Text => format.text_bytes_max(),
+            View::Field(_) => limits::NUMBER_TEXT_BYTES,
+        };
+        format.size() + text
+    }
+
     fn release(&self) {
         self.ownership.released(&self.node);
         if self.cached {
@@ -289,9 +305,9 @@ impl Waiter for ValueFile {
         match self.show(&mut shown) {
             Ok(true) => {
                 self.node.stats.reads.add(1);
-                let n = shown.content.len().min(size);
-                self.engine
-                    .answer(id, Ok(Answer::Data(&shown.content[..n])));
+                let content = self.content(&shown);
+                let n = content.len().min(size);
+                self.engine.answer(id, Ok(Answer::Data(&content[..n])));
             }
             Ok(false) => self.engine.answer(id, Err(Error::WouldBlock)),
             Err(error) => self.engine.answer(id, Err(error)),

@@ -1,0 +1,530 @@
+//! Native converters in a process of their own (`isolate = true`): whatever they do costs their own node an error.
+//!
+//! Owns the life of one node's process: what it has loaded, when another one is started in its place, and which states of open
+//! files are in it. `process` is one such process, `words` what is said to it, `memory` the way there; `inner` is what
+//! runs in it, held to few system calls by `calls`.
+//!
+//! All open files of a node share its process and take turns. A process that has died takes the states of all of them along:
+//! each begins anew at its next tuple, in another process. The first one is started at once, further ones after growing pauses.
+
+mod calls;
+pub mod inner;
+mod memory;
+mod process;
+mod words;
+
+pub use process::COMMAND;
+
+use super::shared::{INLINE, LibraryError, OpenInfo, Wrong, label, shown};
+use crate::events::lock;
+use crate::failure::Blame;
+use crate::limits::{
+    ISOLATED_BYTES, ISOLATED_CALM, ISOLATED_LOAD_PATIENCE, ISOLATED_PATIENCE, ISOLATED_PAUSE,
+    ISOLATED_PAUSE_MAX, ISOLATED_TUPLE_BYTES,
+};
+use converter::{Conversion, Direction, Fault};
+use memory::Shared;
+use process::{Lost, Running};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+use words::{Load, Reply, Request};
+
+/// The process of one node's native converters, through the deaths of it.
+pub struct Isolated {
+    node: String,
+    /// How long one tuple may take.
+    patience: Duration,
+    life: Mutex<Life>,
+    /// States whose file was closed while another one was busy.
+    left: Mutex<Vec<Place>>,
+}
+
+/// Where the state of an open file is: in which of the processes, and its number there.
+type Place = (u32, u32);
+
+struct Life {
+    loads: Vec<Load>,
+    is_sealed: bool,
+    running: Option<Running>,
+    /// How many were started.
+    generation: u32,
+    /// Why the last one is gone; then nothing is started until so long after that.
+    lost: Option<(String, Instant)>,
+    pause: Duration,
+    message: Vec<u8>,
+    answer: Vec<u8>,
+}
+
+/// One converter of a library that is loaded there; cheap to clone.
+#[derive(Clone)]
+pub struct Apart {
+    process: Arc<Isolated>,
+    library: u32,
+    label: Arc<str>,
+}
+
+impl Isolated {
+    /// Nothing is started yet. `budget` is added to the time that each tuple may take.
+    pub fn new(node: &str, budget: Duration) -> Arc<Self> {
+        Arc::new(Self {
+            node: node.to_owned(),
+            patience: ISOLATED_PATIENCE + budget,
+            life: Mutex::new(Life {
+                loads: Vec::new(),
+                is_sealed: false,
+                running: None,
+                generation: 0,
+                lost: None,
+                pause: Duration::ZERO,
+                message: Vec::new(),
+                answer: process::room(),
+            }),
+            left: Mutex::default(),
+        })
+    }
+
+    /// As `Library::load_copy_of`, there.
+    ///
+    /// # Errors
+    /// What is wrong with it, or what has become of the process meanwhile.
+    pub fn load_copy_of(
+        self: &Arc<Self>,
+        path: &Path,
+        copy: &Path,
+        name: Option<&str>,
+    ) -> Result<Apart, LibraryError> {
+        let (shown, short) = shown(path);
+        self.load(copy, shown, short, name)
+    }
+
+    /// Loads what was compiled of inline C, there.
+    ///
+    /// # Errors
+    /// As of [`load_copy_of`](Self::load_copy_of).
+    pub fn load_inline(self: &Arc<Self>, compiled: &Path) -> Result<Apart, LibraryError> {
+        let inline = INLINE.to_owned();
+        self.load(compiled, inline.clone(), inline, None)
+    }
+
+    fn load(
+        self: &Arc<Self>,
+        file: &Path,
+        shown: String,
+        short: String,
+        name: Option<&str>,
+    ) -> Result<Apart, LibraryError> {
+        let wrong = |why| LibraryError::Library {
+            shown: shown.clone(),
+            why,
+        };
+        let load = Load {
+            file: file.to_string_lossy().into_owned(),
+            shown: shown.clone(),
+            short: short.clone(),
+            name: name.map(str::to_owned),
+        };
+        let mut life = lock(&self.life);
+        let lost = |lost: Refused| wrong(Wrong::Lost(lost.to_string()));
+        life.start().map_err(lost)?;
+        life.load(&load).map_err(wrong)?;
+        life.loads.push(load);
+        Ok(Apart {
+            process: Arc::clone(self),
+            library: u32::try_from(life.loads.len() - 1).unwrap_or(u32::MAX),
+            label: label(&short, name),
+        })
+    }
+
+    /// Everything is loaded: from here on the process has no right to open files.
+    ///
+    /// Gives whether the kernel holds it to its few system calls.
+    ///
+    /// # Errors
+    /// What has become of the process.
+    pub fn seal(&self) -> Result<bool, LibraryError> {
+        let mut life = lock(&self.life);
+        life.is_sealed = true;
+        life.seal().map_err(|lost| LibraryError::Library {
+            shown: "the isolated converter".to_owned(),
+            why: Wrong::Lost(lost.to_string()),
+        })
+    }
+}
+
+impl Apart {
+    /// Makes the converter's state for one open file and direction.
+    ///
+    /// # Errors
+    /// The converter's own refusal, in its words, or what has become of its process.
+    pub fn open(&self, info: &OpenInfo<'_>) -> Result<IsolatedStage, Fault> {
+        let mut stage = IsolatedStage {
+            apart: self.clone(),
+            direction: info.direction,
+            input_size: info.input_size,
+            output_size: info.output_size,
+            params: info.params.clone(),
+            log: Arc::clone(&info.log),
+            place: None,
+        };
+        let apart = self.clone();
+        stage.placed(&mut lock(&apart.process.life))?;
+        Ok(stage)
+    }
+}
+
+/// A native converter opened for one file and direction, in another process; dropping it closes it.
+pub struct IsolatedStage {
+    apart: Apart,
+    direction: Direction,
+    input_size: usize,
+    output_size: usize,
+    params: BTreeMap<String, f64>,
+    log: Arc<dyn Fn(&str) + Send + Sync>,
+    place: Option<Place>,
+}
+
+impl IsolatedStage {
+    /// As `NativeStage::convert`; a process that dies of the tuple, or does not answer, is a fault as well.
+    ///
+    /// # Errors
+    /// The fault in the converter's words, or what has become of its process, after the library's name.
+    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, Fault> {
+        if input.len().max(output.len()) > ISOLATED_TUPLE_BYTES {
+            let (_, made, fault) = self.convert_many(input, output);
+            return match fault {
+                Some(fault) => Err(fault),
+                None if made > 0 => Ok(Conversion::Produced),
+                None => Ok(Conversion::Consumed),
+            };
+        }
+        let process = Arc::clone(&self.apart.process);
+        let mut life = lock(&process.life);
+        let instance = self.placed(&mut life)?;
+        let request = Request::One {
+            instance,
+            tuple: input,
+        };
+        let reply = match life.ask(&request, process.patience, false) {
+            Ok(Reply::Consumed) => return Ok(Conversion::Consumed),
+            Ok(Reply::Produced(made)) if made.len() == output.len() => {
+                output.copy_from_slice(made);
+                return Ok(Conversion::Produced);
+            }
+            Ok(Reply::Fault(why)) => return Err(Fault::new(why)),
+            Ok(_) => Lost::Rubbish,
+            Err(lost) => lost,
+        };
+        Err(self.lost(&mut life, &reply))
+    }
+
+    /// As `NativeStage::convert_many`. Of a batch in which the process dies, what was converted before counts.
+    pub fn convert_many(
+        &mut self,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> (usize, usize, Option<Fault>) {
+        let (mut taken, mut made) = (0, 0);
+        loop {
+            let from = &input[taken * self.input_size..];
+            let to = &mut output[made * self.output_size..];
+            if from.len() < self.input_size || to.len() < self.output_size {
+                return (taken, made, None);
+            }
+            let is_one = from.len() < 2 * self.input_size
+                && self.input_size.max(self.output_size) <= ISOLATED_TUPLE_BYTES;
+            let (newly_taken, newly_made, fault) = if is_one {
+                match self.convert(&from[..self.input_size], &mut to[..self.output_size]) {
+                    Ok(Conversion::Produced) => (1, 1, None),
+                    Ok(Conversion::Consumed) => (1, 0, None),
+                    Err(fault) => (1, 0, Some(fault)),
+                }
+            } else {
+                self.batch(from, to)
+            };
+            taken += newly_taken;
+            made += newly_made;
+            if fault.is_some() {
+                return (taken, made, fault);
+            }
+        }
+    }
+
+    /// As many whole tuples as the shared memory holds, and at least one.
+    fn batch(&mut self, input: &[u8], output: &mut [u8]) -> (usize, usize, Option<Fault>) {
+        let fitting = |bytes: usize, size: usize| bytes.min(ISOLATED_BYTES) / size;
+        let tuples = fitting(input.len(), self.input_size);
+        let room = fitting(output.len(), self.output_size);
+        let input = &input[..tuples * self.input_size];
+        let process = Arc::clone(&self.apart.process);
+        let mut life = lock(&process.life);
+        let instance = match self.placed(&mut life) {
+            Ok(instance) => instance,
+            Err(fault) => return (1, 0, Some(fault)),
+        };
+        let word = |number| u32::try_from(number).unwrap_or(u32::MAX);
+        let request = Request::Many {
+            instance,
+            input_bytes: word(input.len()),
+            output_bytes: word(room * self.output_size),
+        };
+        if let Some(shared) = life.shared() {
+            shared.put_input(input);
+        }
+        let counts = |taken: u32, made: u32| {
+            let (taken, made) = (taken as usize, made as usize);
+            (taken <= tuples && made <= room && made <= taken).then_some((taken, made))
+        };
+        let matter = match life.ask(&request, process.patience, true) {
+            Ok(Reply::Many { taken, made, fault }) => match counts(taken, made) {
+                // A batch without a fault ends where the tuples or the room do.
+                Some((taken, made)) if fault.is_some() || taken == tuples || made == room => {
+                    life.take_output(&mut output[..made * self.output_size]);
+                    return (taken, made, fault.map(Fault::new));
+                }
+                _ => Lost::Rubbish,
+            },
+            Ok(Reply::Fault(why)) => return (1, 0, Some(Fault::new(why))),
+            Ok(_) => Lost::Rubbish,
+            Err(lost) => lost,
+        };
+        // What was whole before stays; the tuple after those that were taken is the one that it died of.
+        let told = life.shared().map(Shared::progress);
+        let (taken, made) = told
+            .and_then(|(taken, made)| counts(taken, made))
+            .unwrap_or((0, 0));
+        life.take_output(&mut output[..made * self.output_size]);
+        let fault = self.lost(&mut life, &matter);
+        ((taken + 1).min(tuples), made, Some(fault))
+    }
+
+    /// The number of its state in the present process, which is started if there is none.
+    fn placed(&mut self, life: &mut Life) -> Result<u32, Fault> {
+        life.start().map_err(|lost| self.labelled(&lost))?;
+        if let Some((generation, instance)) = self.place
+            && generation == life.generation
+        {
+            return Ok(instance);
+        }
+        self.apart.process.leave(life);
+        let request = Request::Open {
+            library: self.apart.library,
+            direction: self.direction,
+            input_size: u32::try_from(self.input_size).unwrap_or(u32::MAX),
+            output_size: u32::try_from(self.output_size).unwrap_or(u32::MAX),
+            node: self.apart.process.node.clone(),
+            params: self.params.clone(),
+        };
+        let lost = match life.ask(&request, self.apart.process.patience, false) {
+            Ok(Reply::Opened { instance, log }) => {
+                self.place = Some((life.generation, instance));
+                for line in log {
+                    (self.log)(&line);
+                }
+                return Ok(instance);
+            }
+            Ok(Reply::Fault(why)) => return Err(Fault::new(why)),
+            Ok(_) => Lost::Rubbish,
+            Err(lost) => lost,
+        };
+        Err(self.lost(life, &lost))
+    }
+
+    /// The process is gone: it is told in the log, once, and to this caller.
+    fn lost(&self, life: &mut Life, lost: &Lost) -> Fault {
+        life.forget(lost);
+        let fault = self.labelled(lost);
+        (self.log)(&format!(
+            "{fault}; its states begin anew in another process"
+        ));
+        fault
+    }
+
+    fn labelled(&self, why: &dyn std::fmt::Display) -> Fault {
+        Fault::new(format!("{}: {why}", self.apart.label))
+    }
+}
+
+impl Drop for IsolatedStage {
+    fn drop(&mut self) {
+        let Some(place) = self.place else { return };
+        lock(&self.apart.process.left).push(place);
+        // Nobody waits for a busy converter in order to close a file: the next tuple of another one does it.
+        if let Ok(mut life) = self.apart.process.life.try_lock() {
+            self.apart.process.leave(&mut life);
+        }
+    }
+}
+
+impl Isolated {
+    /// Closes the states of files that are closed.
+    fn leave(&self, life: &mut Life) {
+        for (generation, instance) in std::mem::take(&mut *lock(&self.left)) {
+            if generation != life.generation || life.running.is_none() {
+                continue;
+            }
+            if let Err(lost) = life
+                .ask(&Request::Close { instance }, self.patience, false)
+                .map(drop)
+            {
+                life.forget(&lost);
+            }
+        }
+    }
+}
+
+impl Life {
+    /// There is a process with everything loaded, or the pause until there may be another one is not over.
+    fn start(&mut self) -> Result<(), Refused> {
+        if self.running.is_some() {
+            return Ok(());
+        }
+        let now = Instant::now();
+        if let Some((why, not_before)) = &self.lost
+            && now < *not_before
+        {
+            return Err(Refused {
+                why: why.clone(),
+                again: Some(*not_before - now),
+            });
+        }
+        let started = Running::start().map_err(Lost::NotStarted);
+        let ready = started.and_then(|running| {
+            self.running = Some(running);
+            self.generation = self.generation.wrapping_add(1);
+            self.fill()
+        });
+        ready.map_err(|lost| {
+            self.forget(&lost);
+            Refused {
+                why: lost.to_string(),
+                again: None,
+            }
+        })
+    }
+
+    /// Loads into a new process what the one before had.
+    fn fill(&mut self) -> Result<(), Lost> {
+        for load in self.loads.clone() {
+            if let Err(why) = self.load(&load) {
+                return Err(Lost::NotStarted(std::io::Error::other(why.to_string())));
+            }
+        }
+        if self.is_sealed {
+            self.seal()?;
+        }
+        Ok(())
+    }
+
+    fn load(&mut self, load: &Load) -> Result<(), Wrong> {
+        let request = Request::Load(load.clone());
+        let lost = match self.ask(&request, ISOLATED_LOAD_PATIENCE, false) {
+            Ok(Reply::Done) => return Ok(()),
+            Ok(Reply::Refused { blame, why }) => {
+                return Err(Wrong::Told(blame_of(blame), why));
+            }
+            Ok(_) => Lost::Rubbish,
+            Err(lost) => lost,
+        };
+        self.forget(&lost);
+        Err(Wrong::Lost(lost.to_string()))
+    }
+
+    fn seal(&mut self) -> Result<bool, Lost> {
+        match self.ask(&Request::Seal, ISOLATED_LOAD_PATIENCE, false) {
+            Ok(Reply::Sealed { is_confined }) => Ok(is_confined),
+            Ok(_) => Err(Lost::Rubbish),
+            Err(lost) => Err(lost),
+        }
+    }
+
+    /// A question and its answer.
+    fn ask(
+        &mut self,
+        request: &Request<'_>,
+        patience: Duration,
+        is_batch: bool,
+    ) -> Result<Reply<'_>, Lost> {
+        let running = self.running.as_mut().ok_or(Lost::Rubbish)?;
+        self.message.clear();
+        request.write(&mut self.message);
+        let answer = running.ask(&self.message, &mut self.answer, patience, is_batch)?;
+        Reply::read(answer).ok_or(Lost::Rubbish)
+    }
+
+    fn take_output(&self, output: &mut [u8]) {
+        if let Some(shared) = self.shared() {
+            shared.take_output(output);
+        }
+    }
+
+    fn shared(&self) -> Option<&Shared> {
+        self.running.as_ref().map(|running| &running.shared)
+    }
+
+    /// The process is gone, or there was none.
+    fn forget(&mut self, lost: &Lost) {
+        let running = self.running.take();
+        let lived = running.map_or(Duration::ZERO, |running| running.since.elapsed());
+        if lived > ISOLATED_CALM {
+            self.pause = Duration::ZERO;
+        }
+        self.lost = Some((lost.to_string(), Instant::now() + self.pause));
+        self.pause = (self.pause * 2).clamp(ISOLATED_PAUSE, ISOLATED_PAUSE_MAX);
+    }
+}
+
+/// Why there is no process.
+struct Refused {
+    why: String,
+    /// How long until another one is tried.
+    again: Option<Duration>,
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.why)?;
+        match self.again {
+            Some(again) => write!(f, "; another one is started in {} ms", again.as_millis()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Blames by their numbers in a message.
+const BLAMES: [Blame; 5] = [
+    Blame::Person,
+    Blame::Configuration,
+    Blame::Converter,
+    Blame::Machine,
+    Blame::Ours,
+];
+
+fn blame_number(blame: Blame) -> u8 {
+    match blame {
+        Blame::Person => 0,
+        Blame::Configuration => 1,
+        Blame::Converter => 2,
+        Blame::Machine => 3,
+        Blame::Ours => 4,
+    }
+}
+
+/// A number that is none comes from a converter.
+fn blame_of(number: u8) -> Blame {
+    *BLAMES.get(usize::from(number)).unwrap_or(&Blame::Converter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blames_come_back_as_they_went() {
+        for blame in BLAMES {
+            assert_eq!(blame_of(blame_number(blame)), blame);
+        }
+        assert_eq!(blame_of(200), Blame::Converter);
+    }
+}

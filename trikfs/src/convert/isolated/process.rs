@@ -1,0 +1,192 @@
+//! The process of an isolated converter as the daemon has it: its start, one question and its answer at a time, its end.
+//!
+//! Owns the child and the shared memory. What is asked and when another process is started is known to
+//! `isolated`.
+//!
+//! A process dies with the thread that has started it: the kernel sends it SIGKILL then, also if it hangs in a converter. So
+//! all are started by one thread, which lives as long as the daemon.
+
+use super::memory::{Shared, Waited};
+use crate::limits::{ISOLATED_BATCH_WAITS, ISOLATED_LOOK, ISOLATED_MESSAGE_BYTES};
+use crate::process;
+use nix::sys::signal::Signal;
+use std::fmt;
+use std::fs::File;
+use std::io;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::OnceLock;
+use std::sync::mpsc::{Sender, channel};
+use std::time::{Duration, Instant};
+
+/// The hidden command of this program that is such a process.
+pub const COMMAND: &str = "isolated";
+
+/// Why an answer did not come. Shown, it goes after the converter's name.
+#[derive(Debug)]
+pub(super) enum Lost {
+    /// There is no process.
+    NotStarted(io::Error),
+    /// A signal has ended it.
+    Killed(i32),
+    /// It has ended itself.
+    Exited(i32),
+    /// Somebody has stopped it.
+    Stopped,
+    /// It computes for so long.
+    Late(Duration),
+    /// It has said what no process of ours says.
+    Rubbish,
+}
+
+impl fmt::Display for Lost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotStarted(error) => write!(f, "its process cannot be started: {error}"),
+            Self::Killed(signal) => match Signal::try_from(*signal) {
+                Ok(signal) => write!(f, "its process was ended by {signal}"),
+                Err(_) => write!(f, "its process was ended by signal {signal}"),
+            },
+            Self::Exited(status) => write!(f, "its process ended itself with status {status}"),
+            Self::Stopped => f.write_str("its process was stopped by a signal (SIGSTOP)"),
+            Self::Late(patience) => write!(
+                f,
+                "gave no answer in {} ms: its process was ended",
+                patience.as_millis()
+            ),
+            Self::Rubbish => f.write_str("its process answered what is no answer"),
+        }
+    }
+}
+
+/// A process that runs. Dropping it ends it.
+#[derive(Debug)]
+pub(super) struct Running {
+    child: Child,
+    pub(super) shared: Shared,
+    pub(super) since: Instant,
+}
+
+impl Running {
+    /// Starts this program again as such a process.
+    pub(super) fn start() -> io::Result<Self> {
+        let (shared, file) = Shared::new()?;
+        Ok(Self {
+            child: spawn(file)?,
+            shared,
+            since: Instant::now(),
+        })
+    }
+
+    /// Sends a message and waits for the answer, which is copied to `room`. During a batch a process that goes on is given more
+    /// time.
+    pub(super) fn ask<'a>(
+        &mut self,
+        message: &[u8],
+        room: &'a mut [u8],
+        patience: Duration,
+        is_batch: bool,
+    ) -> Result<&'a [u8], Lost> {
+        if !self.shared.ask(message) {
+            return Err(Lost::Rubbish);
+        }
+        match self.shared.wait(ISOLATED_LOOK) {
+            Waited::Answered => {}
+            Waited::NotYet => self.await_answer(patience, is_batch)?,
+            Waited::Rubbish => return Err(Lost::Rubbish),
+        }
+        self.shared.answer(room).ok_or(Lost::Rubbish)
+    }
+
+    /// The death of a process wakes nobody, so it is looked at from time to time.
+    fn await_answer(&mut self, patience: Duration, is_batch: bool) -> Result<(), Lost> {
+        let mut until = Instant::now() + patience;
+        let mut before = None;
+        let mut waits = 1;
+        loop {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                return Err(death(status));
+            }
+            match self.shared.wait(ISOLATED_LOOK) {
+                Waited::Answered => return Ok(()),
+                Waited::Rubbish => return Err(Lost::Rubbish),
+                Waited::NotYet => {}
+            }
+            if Instant::now() < until {
+                continue;
+            }
+            if process::is_stopped(self.child.id()) {
+                return Err(Lost::Stopped);
+            }
+            let now = Some(self.shared.progress());
+            if !is_batch || now == before || waits == ISOLATED_BATCH_WAITS {
+                return Err(Lost::Late(patience * waits));
+            }
+            before = now;
+            waits += 1;
+            until += patience;
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn death(status: ExitStatus) -> Lost {
+    match (status.signal(), status.code()) {
+        (Some(signal), _) => Lost::Killed(signal),
+        (None, code) => Lost::Exited(code.unwrap_or(0)),
+    }
+}
+
+type Start = (File, Sender<io::Result<Child>>);
+
+/// Has a process started by the thread that does nothing else.
+fn spawn(memory: File) -> io::Result<Child> {
+    static STARTER: OnceLock<Sender<Start>> = OnceLock::new();
+    let starter = match STARTER.get() {
+        Some(starter) => starter,
+        None => {
+            let new = starter()?;
+            // If two were begun at once, the other one ends with its channel before it has started anything.
+            STARTER.get_or_init(|| new)
+        }
+    };
+    let (started, is_started) = channel();
+    let gone = || io::Error::other("the thread that starts them has ended");
+    let sent = starter.send((memory, started));
+    sent.map_err(|_| gone())?;
+    is_started.recv().map_err(|_| gone())?
+}
+
+fn starter() -> io::Result<Sender<Start>> {
+    let (starts, to_start) = channel::<Start>();
+    std::thread::Builder::new()
+        .name("isolated".to_owned())
+        .spawn(move || {
+            for (memory, started) in to_start {
+                // Through this link it is the same program even if its file has been replaced since.
+                let mut command = Command::new("/proc/self/exe");
+                command
+                    .arg0("trikfs")
+                    .args([COMMAND, &std::process::id().to_string()])
+                    .stdin(memory)
+                    .stdout(Stdio::null())
+                    .stderr(Stdio::null())
+                    .env_remove("NOTIFY_SOCKET")
+                    // What a terminal sends to this program ends the process by way of this program.
+                    .process_group(0);
+                let _ = started.send(command.spawn());
+            }
+        })?;
+    Ok(starts)
+}
+
+/// Room for any message.
+pub(super) fn room() -> Vec<u8> {
+    vec![0; ISOLATED_MESSAGE_BYTES]
+}
