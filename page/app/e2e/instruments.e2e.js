@@ -71,8 +71,11 @@ async function pads(page) {
   await page.locator('summary', { hasText: 'Drive by hand' }).click();
   const pad = page.getByRole('button', { name: 'Pad for motors/M3 and motors/M4' });
   await pad.scrollIntoViewIfNeeded();
-  const box = await pad.boundingBox();
-  const at = (x, y) => page.mouse.move(box.x + box.width * x, box.y + box.height * y);
+  // It moves down when something above it comes later.
+  const at = async (x, y) => {
+    const box = await pad.boundingBox();
+    await page.mouse.move(box.x + box.width * x, box.y + box.height * y);
+  };
   const isMoving = async () => value('motors/M3') !== '0';
   const touch = async () => {
     await at(0.5, 0.1);

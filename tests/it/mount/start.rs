@@ -165,17 +165,15 @@ fn somebody_else_than_root_mounts_through_the_helper() {
     ];
     let board = Board::new();
     let tried = harness::run(
-        harness::tools::shell(format!(
-            "{} test -w /dev/fuse -a -x {}",
-            nobody.join(" "),
-            program()
-        ))
-        .current_dir("/"),
+        harness::tools::shell(format!("{} test -w /dev/fuse", nobody.join(" "))).current_dir("/"),
         b"",
     );
     if tried.code() != 0 {
-        return harness::skip("the user nobody may not use /dev/fuse or the program");
+        return harness::skip("the user nobody may not use /dev/fuse");
     }
+    // The checkout may be in a folder that nobody else can enter.
+    let copy = board.path("trikfs");
+    std::fs::copy(program(), &copy).unwrap();
     board.fifo("in");
     let user = nix::unistd::Uid::from_raw(65534);
     let group = nix::unistd::Gid::from_raw(65534);
@@ -190,7 +188,7 @@ fn somebody_else_than_root_mounts_through_the_helper() {
     )
     .unwrap();
     let setting = Setting {
-        program: program(),
+        program: copy.to_str().unwrap(),
         board,
         config: PIPE,
         options: &[],
