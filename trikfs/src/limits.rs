@@ -186,7 +186,7 @@ pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
 /// Lines that a converter may log while it is opened.
 pub const ISOLATED_LOG_LINES: usize = 16;
 /// Bytes of memory that all its states may take together.
-pub const ISOLATED_DATA_BYTES: u64 = 64 << 20;
+pub const ISOLATED_DATA_BYTES: libc::rlim_t = 64 << 20;
 /// Pause before another process is started after a second death; it doubles with each,
 pub const ISOLATED_PAUSE: Duration = Duration::from_millis(100);
 /// ... up to this.
