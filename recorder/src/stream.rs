@@ -153,15 +153,22 @@ impl Stream {
     /// What is sent now.
     fn due(&mut self, entries: &[Entry], now_ns: u64) -> Vec<Entry> {
         let mut due = Vec::with_capacity(entries.len());
+        let period_ns = self.request.period_ns;
         for pace in self.paces.values_mut() {
-            if pace.held.is_some() && pace.due_ns <= now_ns {
-                pace.due_ns = now_ns + self.request.period_ns;
+            // A clock that was set back would leave the node silent until it comes there again.
+            let is_due = now_ns >= pace.due_ns || pace.due_ns > now_ns + period_ns;
+            if pace.held.is_some() && is_due {
+                pace.due_ns = now_ns + period_ns;
                 due.extend(pace.held.take());
             }
         }
         for entry in entries {
             match entry {
-                Entry::Sample(known, unix_ns, _) => self.sample(known, *unix_ns, entry, &mut due),
+                Entry::Sample(known, unix_ns, _) => {
+                    // For up to a second after the clock was set back, samples have times of the clock before.
+                    let at_ns = now_ns.min(*unix_ns);
+                    self.sample(known, at_ns, entry, &mut due);
+                }
                 Entry::Node(known) | Entry::Fault(known, ..) => {
                     if self.request.wants(&known.node.path) {
                         due.push(entry.clone());
@@ -175,7 +182,7 @@ impl Stream {
         due
     }
 
-    fn sample(&mut self, known: &Known, unix_ns: u64, entry: &Entry, due: &mut Vec<Entry>) {
+    fn sample(&mut self, known: &Known, at_ns: u64, entry: &Entry, due: &mut Vec<Entry>) {
         if !self.request.wants(&known.node.path) {
             return;
         }
@@ -184,12 +191,12 @@ impl Stream {
             return;
         }
         let pace = self.paces.entry(known.number).or_default();
-        if unix_ns < pace.due_ns {
+        if at_ns < pace.due_ns {
             pace.held = Some(entry.clone());
             return;
         }
         pace.held = None;
-        pace.due_ns = unix_ns + self.request.period_ns;
+        pace.due_ns = at_ns + self.request.period_ns;
         due.push(entry.clone());
     }
 }
@@ -345,5 +352,38 @@ mod tests {
         assert_eq!(stream.lost, 1);
         pipe.0.lock().unwrap().1 = Took::Gone;
         assert!(!stream.put(&[], begin + 3));
+    }
+
+    #[test]
+    fn a_clock_that_is_set_back_does_not_silence_a_client_with_a_rate() {
+        let pipe = pipe();
+        let request = Request::parse("a;hz=10").unwrap();
+        let mut stream = Stream::begin(request, "test", Box::new(pipe.clone())).unwrap();
+        let a = known(1, "a");
+        let period = 100_000_000;
+        let (before, hour) = (1_700_000_000_000_000_000, 36_000 * period);
+        let now = before - hour;
+        let has = |value: u8| had(&pipe).contains(&("a".to_owned(), value));
+        assert!(stream.put(&[sample(&a, before, 1)], before));
+        // Held when the clock changes ...
+        assert!(stream.put(&[sample(&a, before + 1, 2)], before + 1));
+        assert!(has(1) && !has(2));
+        // ... and sent at the next look, whatever that says.
+        assert!(stream.put(&[], now));
+        assert!(has(2));
+        // At its rate from then on, also with times of the clock before.
+        assert!(stream.put(&[sample(&a, before + 2, 3)], now + 1));
+        assert!(stream.put(&[sample(&a, now + 2, 4)], now + 2));
+        assert!(!has(3) && !has(4));
+        assert!(stream.put(&[], now + period));
+        assert!(!has(3) && has(4));
+        let next = now + 2 * period;
+        assert!(stream.put(&[sample(&a, next, 5)], next));
+        assert!(has(5));
+        // One that was sent just before is due a look after it comes.
+        let earlier = next - hour;
+        assert!(stream.put(&[sample(&a, earlier, 6)], earlier));
+        assert!(stream.put(&[], earlier + 1));
+        assert!(has(6));
     }
 }
