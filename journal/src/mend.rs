@@ -7,7 +7,8 @@
 use crate::chunk::Chunk;
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
-use crate::write::Story;
+use crate::standard::Log;
+use crate::write::{FAULTS, Story};
 use mcap::records::{MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, WriteOptions};
@@ -48,7 +49,8 @@ pub fn copy<R: Read, W: Write + Seek>(
 ) -> Result<Saved, Error> {
     let mut target = Target::new(to);
     let mut saved = Saved::default();
-    let is_wanted = |topic: &str, message: &MessageHeader| is_wanted(topic, message.log_time);
+    let is_wanted =
+        |topic: &str, message: &MessageHeader, _: &[u8]| is_wanted(topic, message.log_time);
     target.pour(from, &mut saved, &is_wanted)?;
     target.finish()?;
     Ok(saved)
@@ -63,7 +65,7 @@ pub fn follow<R: Read, W: Write + Seek>(from: R, to: W) -> Result<Saved, Error> 
     let mut target = Target::new(to);
     target.flushed_ns = Some(0);
     let mut saved = Saved::default();
-    target.pour(from, &mut saved, &|_, _| true)?;
+    target.pour(from, &mut saved, &|_, _, _| true)?;
     target.finish()?;
     Ok(saved)
 }
@@ -80,19 +82,23 @@ pub fn join<R: Read, W: Write + Seek>(
     let mut target = Target::new(to);
     target.joins = true;
     let mut saved = Saved::default();
-    let last: RefCell<HashMap<String, u64>> = RefCell::default();
-    for from in all {
-        let before = last.borrow().clone();
-        let is_new = |topic: &str, message: &MessageHeader| {
-            // In a further recording it stands at the beginning, and this is when it was so first.
-            let unix_ns = message.publish_time;
+    // Of each node the number of the recording with its last message, and when that was so first.
+    let last = RefCell::new(HashMap::new());
+    for (number, from) in all.into_iter().enumerate() {
+        let is_new = |topic: &str, message: &MessageHeader, data: &[u8]| {
             // Lines are never repeated.
-            let is_of_a_node = Story::of(topic).is_none();
-            let repeats = before.get(topic).is_some_and(|last| unix_ns <= *last);
+            if Story::of(topic).is_some() {
+                return true;
+            }
+            // Failures of all nodes have one topic.
+            let fault = (topic == FAULTS).then(|| Log::decode(data)).flatten();
+            let node = fault.map(|fault| fault.name).unwrap_or_default();
+            // What is repeated comes first of its node in a further recording, with the moment of the last one before. What
+            // is only earlier is news: the clock was set back.
+            let unix_ns = message.publish_time;
             let mut last = last.borrow_mut();
-            let newest = last.entry(topic.to_owned()).or_default();
-            *newest = (*newest).max(unix_ns);
-            !(is_of_a_node && repeats)
+            let before = last.insert((topic.to_owned(), node), (number, unix_ns));
+            before.is_none_or(|(part, at_ns)| part == number || at_ns != unix_ns)
         };
         match target.pour(from, &mut saved, &is_new) {
             // It was begun and nothing was written: the recorder was killed just then.
@@ -154,7 +160,7 @@ impl<W: Write + Seek> Target<W> {
         &mut self,
         mut from: R,
         saved: &mut Saved,
-        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
+        is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<(), Error> {
         let options = LinearReaderOptions::default()
             .with_skip_end_magic(true)
@@ -229,7 +235,7 @@ impl<W: Write + Seek> Target<W> {
         opcode: u8,
         data: &[u8],
         saved: &mut Saved,
-        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
+        is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<bool, Stop> {
         if opcode != op::CHUNK {
             return self.take(opcode, data, saved, is_wanted);
@@ -247,7 +253,7 @@ impl<W: Write + Seek> Target<W> {
         opcode: u8,
         data: &[u8],
         saved: &mut Saved,
-        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
+        is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<bool, Stop> {
         let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
@@ -280,7 +286,7 @@ impl<W: Write + Seek> Target<W> {
             Record::Message { header, data } => {
                 let channel = self.channels.get(&header.channel_id);
                 let (id, topic) = channel.ok_or_else(|| unknown("channel"))?;
-                if is_wanted(topic, &header) {
+                if is_wanted(topic, &header, &data) {
                     let channel_id = *id;
                     let header = MessageHeader {
                         channel_id,

@@ -197,3 +197,39 @@ fn only_so_many_saved_files_are_kept() {
     assert_eq!(left.iter().filter(is_asked).count(), limits::BOX_ASKED);
     assert!(left[0].ends_with("saved-05-stop.mcap"), "{left:?}");
 }
+
+#[test]
+fn a_clock_that_is_set_back_costs_no_sample_and_repeats_none() {
+    let folder = tempdir().unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
+    let (moving, still) = (known(1, "a"), known(2, "still"));
+    let fault = |number: u32, path: &str| {
+        let unix_ns = BEGIN_NS + u64::from(number);
+        Entry::Fault(known(number, path), unix_ns, 5, "device: gone".into())
+    };
+    // What each of these has in the end, and each part begins with.
+    let last = [sample(&still, 500), fault(4, "c"), fault(3, "b")];
+    for at in (1000..1010).chain(0..10) {
+        if at % 5 == 0 {
+            kept.end_part();
+        }
+        let first = if at == 1000 { &last[..] } else { &[] };
+        let batch = [first, &[sample(&moving, at)]].concat();
+        kept.put(&batch.into(), || {
+            let before = if at == 0 { 1009 } else { at - 1 };
+            [&last[..], &[sample(&moving, before)]].concat()
+        });
+    }
+    let path = saved_now(&mut kept, SaveReason::Asked);
+    let mut had = values(&path);
+    had.sort_unstable();
+    let all = (0..10).chain([500]).chain(1000..1010);
+    assert_eq!(had, all.collect::<Vec<_>>());
+    let mut reader = Reader::open(File::open(&path).unwrap()).unwrap();
+    let mut faults = 0;
+    while let Some(event) = reader.next().unwrap() {
+        faults += usize::from(matches!(event.what, EventKind::Fault { .. }));
+    }
+    assert_eq!(faults, 2);
+    kept.close();
+}
