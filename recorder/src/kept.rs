@@ -112,12 +112,14 @@ impl BlackBox {
         let directory = &settings.directory;
         fs::create_dir_all(directory).map_err(|error| Error::io(directory, error))?;
         let left = named(directory, PART)?;
+        let after_left = left.last().map_or(0, |path| number_after(path, PART));
         let mut kept = Self {
             library: library.to_owned(),
             parts: VecDeque::new(),
             disk: None,
             looks_at: Instant::now(),
-            next: now_ns() / 1_000_000,
+            // Those that are left are removed by their names while new parts are written.
+            next: after_left.max(now_ns() / 1_000_000),
             saved_at: None,
             is_saving: Arc::default(),
             saving: None,
@@ -238,7 +240,10 @@ impl BlackBox {
 
     fn save_parts(&mut self, parts: Vec<Source>, why: SaveReason, told: OnSaved) {
         let directory = self.settings.directory.clone();
-        let seconds = now_ns() / 1_000_000_000;
+        // The newest has the greatest number also if the clock was set back, and none is written over.
+        let newest = named(&directory, SAVED).unwrap_or_default().pop();
+        let after_newest = newest.map_or(0, |path| number_after(&path, SAVED));
+        let seconds = after_newest.max(now_ns() / 1_000_000_000);
         let path = directory.join(format!("{SAVED}{seconds}-{}.mcap", why.name()));
         let is_saving = self.is_saving.clone();
         is_saving.store(true, Ordering::Relaxed);
@@ -348,7 +353,7 @@ pub fn saved(directory: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(all)
 }
 
-/// Files of a folder whose names begin so, in the order of their names.
+/// Files of a folder whose names begin so, in the order of their numbers, which follow.
 fn named(directory: &Path, begin: &str) -> Result<Vec<PathBuf>, Error> {
     let entries = fs::read_dir(directory).map_err(|error| Error::io(directory, error))?;
     let mut all: Vec<PathBuf> = entries
@@ -356,8 +361,21 @@ fn named(directory: &Path, begin: &str) -> Result<Vec<PathBuf>, Error> {
         .filter(|entry| entry.file_name().to_string_lossy().starts_with(begin))
         .map(|entry| entry.path())
         .collect();
-    all.sort();
+    all.sort_by_cached_key(|path| (number(path, begin), path.clone()));
     Ok(all)
+}
+
+/// The number after the beginning of the name of a file; 0 if there is none.
+fn number(path: &Path, begin: &str) -> u64 {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let after = name.strip_prefix(begin).unwrap_or_default();
+    let end = after.find(|c: char| !c.is_ascii_digit());
+    after[..end.unwrap_or(after.len())].parse().unwrap_or(0)
+}
+
+/// The one for a file that comes after this.
+fn number_after(path: &Path, begin: &str) -> u64 {
+    number(path, begin).saturating_add(1)
 }
 
 #[cfg(test)]

@@ -233,3 +233,25 @@ fn a_clock_that_is_set_back_costs_no_sample_and_repeats_none() {
     assert_eq!(faults, 2);
     kept.close();
 }
+
+#[test]
+fn what_is_saved_after_the_clock_was_set_back_is_the_newest_and_replaces_none() {
+    let folder = tempdir().unwrap();
+    let file = |second: u64| folder.path().join(format!("{SAVED}{second}-crash.mcap"));
+    for number in 0..limits::BOX_SAVED as u64 {
+        fs::write(file(9_000_000_000 + number), "").unwrap();
+    }
+    // As of a clock that was not set yet.
+    fs::write(file(25), "").unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
+    for _ in 0..2 {
+        fill(&mut kept, 0..10, &[]);
+        let path = saved_now(&mut kept, SaveReason::Crash);
+        assert!(path.exists());
+        assert_eq!(saved(folder.path()).unwrap().last(), Some(&path));
+    }
+    let left = saved(folder.path()).unwrap();
+    assert_eq!(left.len(), limits::BOX_SAVED);
+    assert!(left[0].ends_with("saved-9000000002-crash.mcap"), "{left:?}");
+    kept.close();
+}
