@@ -139,10 +139,12 @@ impl BlackBox {
             self.looks_at = now + Duration::from_secs(1);
             let most = self.part_bytes();
             let span = self.settings.span / u32::try_from(limits::BOX_PARTS).unwrap_or(1);
-            let is_full = self.disk.as_ref().is_some_and(|(disk, begun)| {
-                disk.has_failed() || disk.size() >= most || begun.elapsed() >= span
+            let is_over = self.disk.as_ref().is_some_and(|(disk, begun)| {
+                let is_full = disk.size() >= most || begun.elapsed() >= span;
+                // What is written to a file that somebody has removed is never saved.
+                is_full || disk.has_failed() || !disk.path().exists()
             });
-            if is_full {
+            if is_over {
                 self.end_part();
             }
             self.forget(now);
@@ -154,7 +156,12 @@ impl BlackBox {
             let times = batch.iter().filter_map(Entry::unix_ns);
             let begin_ns = times.min().unwrap_or_else(now_ns);
             let library = &self.library;
-            let disk = Disk::create_at(begin_ns, &path, library, limits::BOX_WAITING_BYTES);
+            let create = || Disk::create_at(begin_ns, &path, library, limits::BOX_WAITING_BYTES);
+            let disk = create().or_else(|error| {
+                // Somebody may have removed the folder.
+                fs::create_dir_all(&self.settings.directory).map_err(|_| error)?;
+                create()
+            });
             let Ok(disk) = disk else {
                 // The disk is full or read-only; the next second may be better.
                 return;

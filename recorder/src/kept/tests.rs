@@ -255,3 +255,18 @@ fn what_is_saved_after_the_clock_was_set_back_is_the_newest_and_replaces_none() 
     assert!(left[0].ends_with("saved-9000000002-crash.mcap"), "{left:?}");
     kept.close();
 }
+
+#[test]
+fn a_folder_that_was_removed_is_made_again_with_the_next_part() {
+    let folder = tempdir().unwrap();
+    let place = folder.path().join("box");
+    let mut kept = BlackBox::open(settings(&place), "test", nothing()).unwrap();
+    fill(&mut kept, 0..10, &[]);
+    fs::remove_dir_all(&place).unwrap();
+    // A look later.
+    kept.looks_at = Instant::now();
+    fill(&mut kept, 10..20, &[]);
+    let had = values(&saved_now(&mut kept, SaveReason::Asked));
+    assert_eq!(had, (10..20).chain([1000]).collect::<Vec<_>>());
+    kept.close();
+}
