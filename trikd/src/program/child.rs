@@ -3,6 +3,7 @@
 //! Owns the descriptors of one child. What its messages lead to is not known here.
 
 use super::output::Lines;
+use super::python;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
 use crate::protocol::program::ToProgram;
@@ -135,6 +136,20 @@ pub fn install(run: &Path) -> io::Result<()> {
     std::os::unix::fs::symlink(std::env::current_exe()?, path)
 }
 
+/// Puts back what a program needs of `run`, if somebody has removed it, as cleaners of temporary files do. Gives where modules
+/// of Python are.
+fn restore(run: &Path, language: Language) -> io::Result<PathBuf> {
+    if run.join(NAME).symlink_metadata().is_err() {
+        // Only programs that draw need it, and they say so.
+        let _ = std::fs::create_dir_all(run).and_then(|()| install(run));
+    }
+    let modules = run.join("python");
+    if language == Language::Python {
+        python::restore(&modules)?;
+    }
+    Ok(modules)
+}
+
 /// The command that starts this program once more.
 pub fn this_program() -> Command {
     let mut command = Command::new(SELF);
@@ -235,7 +250,7 @@ pub fn start(
         std::env::var_os("PATH").unwrap_or_else(|| "/usr/local/bin:/usr/bin:/bin".into());
     let words = words(settings, &directories, language, path)?;
     command.arg("--").args(words);
-    let python: PathBuf = settings.run.join("python");
+    let modules = restore(&settings.run, language)?;
     command
         .env_clear()
         .env("PATH", directories)
@@ -248,7 +263,7 @@ pub fn start(
         .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
-        .env("PYTHONPATH", python)
+        .env("PYTHONPATH", modules)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .current_dir(&settings.scripts)
         .stdout(Stdio::piped())

@@ -537,3 +537,16 @@ fn what_stops_motors_goes_before_programs() {
         nice_of("rest") == [-20] && nice_of("keys") == [-20] && nice_of("trikd") == [-5]
     });
 }
+
+#[test]
+fn what_programs_need_is_made_again_where_somebody_has_removed_it() {
+    let robot = robot(&[]);
+    std::fs::remove_dir_all(robot.home.path("run")).unwrap();
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "a.py",
+        "import os\nprint(brick.sensor(A1).read(), os.path.exists(os.environ['TRIKD']))",
+    );
+    client.expect("print: 27 True\n");
+}
