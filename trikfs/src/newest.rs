@@ -2,13 +2,14 @@
 //!
 //! Owns the way of a sample into the latch, when samples are taken (on read, by the clock, on event), which reads wait for
 //! the first one, and when a sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in
-//! the kernel's page cache, `joining` is who comes and goes, `need` whether anybody needs
+//! the kernel's page cache, `bus` the one in shared memory, `joining` is who comes and goes, `need` whether anybody needs
 //! the clock's samples. A failure replaces the sample: what cannot be read is an error with a reason, never the
 //! value of before.
 
 // A pace or a kind of source that is forgotten must not leave a value that grows old in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod bus;
 mod joining;
 mod need;
 mod pace;
@@ -116,15 +117,7 @@ impl Newest {
         let Some(node) = self.node.upgrade() else {
             return;
         };
-        if node.description.pace != Pace::OnRead {
-            self.join_bus(&node);
-        }
-        if node.description.rest.is_some() {
-            match node.engine.samples.ring_of_writes(&node.description) {
-                Ok(ring) => node.driving.set_ring(ring),
-                Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
-            }
-        }
+        self.join_bus(&node);
         match node.description.pace {
             Pace::OnRead => {}
             Pace::Every { .. } => {
@@ -139,28 +132,6 @@ impl Newest {
                 lock(&self.jobs).push(me);
                 self.schedule_ageing(&node);
             }
-        }
-    }
-
-    fn join_bus(&self, node: &Node) {
-        match node.engine.samples.ring(&node.description) {
-            Ok(ring) => self.latch.set_ring(ring),
-            Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
-        }
-        self.tell_bus_of_period(node);
-    }
-
-    fn tell_bus_of_period(&self, node: &Node) {
-        if let Some(age) = too_old(node) {
-            self.latch.tell_ring_of_age(age);
-        }
-    }
-
-    /// Ends the node's part of the sample bus.
-    pub fn leave_bus(&self) {
-        self.latch.set_ring(None);
-        if let Some(node) = self.node.upgrade() {
-            node.driving.set_ring(None);
         }
     }
 

@@ -1,0 +1,41 @@
+//! A node's part of the sample bus: a ring of its samples, and one of what is written to it.
+//!
+//! Owns which of them a node has, and since when. They stand where samples and writes pass; where their files are is not
+//! known here.
+
+use super::{Newest, too_old};
+use crate::node::Node;
+use config::description::Pace;
+
+impl Newest {
+    /// Takes the rings that the description asks for.
+    pub(super) fn join_bus(&self, node: &Node) {
+        if node.description.pace != Pace::OnRead {
+            match node.engine.samples.ring(&node.description) {
+                Ok(ring) => self.latch.set_ring(ring),
+                Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
+            }
+            self.tell_bus_of_period(node);
+        }
+        if node.description.rest.is_some() {
+            match node.engine.samples.ring_of_writes(&node.description) {
+                Ok(ring) => node.driving.set_ring(ring),
+                Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
+            }
+        }
+    }
+
+    pub(super) fn tell_bus_of_period(&self, node: &Node) {
+        if let Some(age) = too_old(node) {
+            self.latch.tell_ring_of_age(age);
+        }
+    }
+
+    /// Ends the node's part of the sample bus.
+    pub fn leave_bus(&self) {
+        self.latch.set_ring(None);
+        if let Some(node) = self.node.upgrade() {
+            node.driving.set_ring(None);
+        }
+    }
+}
