@@ -6,7 +6,7 @@
 use crate::limits;
 use nix::unistd::geteuid;
 use std::collections::{HashMap, HashSet};
-use std::fs::{File, Permissions, TryLockError};
+use std::fs::{File, Metadata, Permissions, TryLockError};
 use std::io;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt, symlink};
@@ -77,12 +77,12 @@ fn escape(path: &[u8], name: &mut String) {
     }
 }
 
-/// The directory of one publisher. Dropping it removes it with all that is in it.
+/// The directory of one publisher. Dropping it removes it with all that is in it, unless another one is in its place.
 #[derive(Debug)]
 pub struct Directory {
     path: PathBuf,
     /// Holds the lock that keeps others out for as long as this process lives.
-    _lock: File,
+    lock: File,
 }
 
 impl Directory {
@@ -111,7 +111,7 @@ impl Directory {
             };
             let taken = Self {
                 path: path.to_owned(),
-                _lock: lock,
+                lock,
             };
             taken.empty()?;
             std::fs::set_permissions(path, Permissions::from_mode(mode))?;
@@ -125,14 +125,28 @@ impl Directory {
         &self.path
     }
 
+    /// Whether it still is where it is: it can be removed, and made again by others.
+    pub fn is_there(&self) -> bool {
+        self.lock
+            .metadata()
+            .is_ok_and(|meta| is_at(&self.path, &meta))
+    }
+
     /// Makes second names of rings: exactly these links, from their names to names of rings, which need not be there
     /// yet. Those that lead where they should are left alone.
     ///
     /// # Errors
     /// The name of the first link that could not be made or removed; the others are as they should be.
     pub fn set_links(&self, links: &HashMap<String, String>) -> Result<(), (String, io::Error)> {
-        let entries = std::fs::read_dir(&self.path);
-        let entries = entries.map_err(|error| (String::new(), error))?;
+        let entries = match std::fs::read_dir(&self.path) {
+            Ok(entries) => entries,
+            Err(error) => {
+                // It was removed: without second names that is not noticed here.
+                let why = format!("{}: {error}", self.path.display());
+                let why = io::Error::new(error.kind(), why);
+                return (links.keys().min()).map_or(Ok(()), |name| Err((name.clone(), why)));
+            }
+        };
         let mut failed = None;
         let mut kept = HashSet::new();
         for entry in entries.flatten() {
@@ -173,8 +187,10 @@ impl Directory {
 
 impl Drop for Directory {
     fn drop(&mut self) {
-        // What cannot be removed is removed by the next one.
-        let _ = self.empty().and_then(|()| std::fs::remove_dir(&self.path));
+        if self.is_there() {
+            // What cannot be removed is removed by the next one.
+            let _ = self.empty().and_then(|()| std::fs::remove_dir(&self.path));
+        }
     }
 }
 
@@ -200,7 +216,7 @@ pub fn remove_left(path: &Path) -> bool {
         Ok(Some(lock)) => {
             drop(Directory {
                 path: path.to_owned(),
-                _lock: lock,
+                lock,
             });
             !path.exists()
         }
@@ -233,6 +249,11 @@ fn lock(path: &Path) -> io::Result<Option<File>> {
         }
         Err(TryLockError::Error(error)) => return Err(error),
     }
-    let same = |found: std::fs::Metadata| (found.dev(), found.ino()) == (meta.dev(), meta.ino());
-    Ok(path.symlink_metadata().is_ok_and(same).then_some(file))
+    Ok(is_at(path, &meta).then_some(file))
+}
+
+/// Whether what this is known of is at this path.
+fn is_at(path: &Path, meta: &Metadata) -> bool {
+    let same = |found: Metadata| (found.dev(), found.ino()) == (meta.dev(), meta.ino());
+    path.symlink_metadata().is_ok_and(same)
 }

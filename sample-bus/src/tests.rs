@@ -4,6 +4,7 @@ use crate::layout::{self, HEADER_BYTES, Layout};
 use crate::place::{self, Directory};
 use crate::{Event, Reader, Rights, Step, Writer};
 use proptest::prelude::*;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{FileExt, PermissionsExt, symlink};
@@ -348,6 +349,26 @@ fn publishers_that_begin_and_sweepers_do_not_disturb_each_other() {
         }
     });
     assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_directory_that_was_removed_is_noticed_and_another_one_in_its_place_stays() {
+    let folder = Folder::new();
+    let path = folder.path("bus");
+    let gone = Directory::take(&path, 0o700).unwrap();
+    assert!(gone.is_there());
+    std::fs::remove_dir_all(&path).unwrap();
+    assert!(!gone.is_there());
+    gone.set_links(&HashMap::new()).unwrap();
+    let links = HashMap::from([("one".to_owned(), "ring".to_owned())]);
+    let (name, error) = gone.set_links(&links).unwrap_err();
+    assert_eq!(name, "one");
+    let why = error.to_string();
+    assert!(why.starts_with(&path.display().to_string()), "{why}");
+    let another = Directory::take(&path, 0o700).unwrap();
+    assert!(!gone.is_there());
+    drop(gone);
+    assert!(another.is_there());
 }
 
 #[test]

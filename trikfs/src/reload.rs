@@ -348,10 +348,8 @@ impl Reloader {
         for file in setup.files.all() {
             file.retire();
         }
-        // A new node's ring may need the place of a second name that is gone.
-        if let Err(error) = setup.engine.samples.set_aliases(aliases) {
-            setup.engine.log.line(&error.to_string());
-        }
+        let kept = tree.nodes().iter().filter(|node| !is_new(node));
+        self.put_on_bus(kept, aliases);
         for node in &new {
             node.sampling.newest.start();
         }
@@ -366,6 +364,26 @@ impl Reloader {
             let copies = copies::encode(&lock(&self.state).copies);
             self.warn_of("which libraries are loaded", ledger.set_copies(&copies));
             self.warn_of("what brings the actuators to rest", ledger.set_rest(rest));
+        }
+    }
+
+    /// Brings the sample bus up to date but for new nodes, whose rings come with their start.
+    fn put_on_bus<'a>(&self, kept: impl Iterator<Item = &'a Arc<Node>>, aliases: &[Alias]) {
+        let engine = &self.setup.engine;
+        match engine.samples.restore() {
+            Ok(false) => {}
+            Ok(true) => {
+                let line = "sample bus: its folder was removed, and is made again";
+                engine.log.line(line);
+                for node in kept {
+                    node.sampling.newest.join_bus_again();
+                }
+            }
+            Err(error) => engine.log.line(&error.to_string()),
+        }
+        // A new node's ring may need the place of a second name that is gone.
+        if let Err(error) = engine.samples.set_aliases(aliases) {
+            engine.log.line(&error.to_string());
         }
     }
 }

@@ -428,3 +428,36 @@ open(M + '/stop', 'w').write('1')
         );
     }
 }
+
+#[test]
+fn a_folder_that_was_removed_is_back_with_the_next_configuration() {
+    let more = "near = { alias = 'sensors/zero' },
+      motor = { src = '$DIR/motor', input_tuple_size = 1, rest = { 0 } },
+      sensors = {";
+    let config = TREE.replace("sensors = {", more);
+    let board = Board::new();
+    board.file("motor", ".");
+    let Some(m) = mount_on(board, &config, &[]) else {
+        return;
+    };
+    let old = open(&m, "sensors/ramp");
+    std::fs::remove_dir_all(directory(&m)).unwrap();
+    // Files never notice.
+    assert_eq!(m.read("sensors/zero/bin_data").unwrap(), [0; 4]);
+    m.apply(&config.replace("'abcd'", "'wxyz'")).unwrap();
+    // Of a node that has changed, and of those that are the same.
+    for node in ["sensors/ramp", "sensors/zero", "near"] {
+        eventually(node, || {
+            Reader::open(m.root(), node).is_ok_and(|reader| errno(&reader) == 0)
+        });
+    }
+    let mut writes = Reader::open_written(m.root(), "motor").unwrap();
+    m.sh("printf x > motor/device");
+    let mut tuple = Vec::new();
+    assert!(matches!(writes.next_event(&mut tuple), Step::Event(_)));
+    assert_eq!(tuple, b"x");
+    assert!(!old.is_current());
+    let place = directory(&m);
+    drop(m);
+    assert!(!place.exists());
+}

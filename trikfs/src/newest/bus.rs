@@ -31,6 +31,15 @@ impl Newest {
         }
     }
 
+    /// The bus has another directory: takes rings there. The former ones end first, because their end removes files of the same
+    /// names.
+    pub fn join_bus_again(&self) {
+        self.leave_bus();
+        if let Some(node) = self.node.upgrade() {
+            self.join_bus(&node);
+        }
+    }
+
     /// Ends the node's part of the sample bus.
     pub fn leave_bus(&self) {
         self.latch.set_ring(None);

@@ -35,6 +35,14 @@ impl SampleBus {
     ///
     /// # Errors
     /// None.
+    pub fn restore(&self) -> Result<bool, BusError> {
+        Ok(false)
+    }
+
+    /// Does nothing.
+    ///
+    /// # Errors
+    /// None.
     pub fn set_aliases(&self, _aliases: &[Alias]) -> Result<(), BusError> {
         Ok(())
     }

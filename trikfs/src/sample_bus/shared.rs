@@ -45,26 +45,34 @@ impl SampleBus {
     /// Why there is no sample bus; `status` shows it as well.
     pub fn open(&self, mountpoint: &Path, readers: Readers) -> Result<(), BusError> {
         let shared_memory = Path::new(SHARED_MEMORY);
-        let mode = match readers {
-            Readers::Owner => 0o700,
-            Readers::All => 0o755,
-        };
         place::sweep(shared_memory);
-        let taken = place::directory(shared_memory, mountpoint).and_then(|path| {
-            let taken = Directory::take(&path, mode);
-            taken.map_err(|error| std::io::Error::other(format!("{}: {error}", path.display())))
-        });
-        match taken {
-            Ok(directory) => {
-                *lock(&self.place) = Some(Place { directory, readers });
-                Ok(())
-            }
-            Err(error) => {
-                let error = BusError::Off(error.to_string());
-                *lock(&self.problem) = Some(error.clone());
-                Err(error)
-            }
+        let path = place::directory(shared_memory, mountpoint);
+        let directory = self.note(path.and_then(|path| take(&path, readers)))?;
+        *lock(&self.place) = Some(Place { directory, readers });
+        Ok(())
+    }
+
+    /// Takes the directory again if somebody has removed it. True: it is another one, and all rings are to be made anew.
+    ///
+    /// # Errors
+    /// Why there is no sample bus any more; `status` shows it as well.
+    pub fn restore(&self) -> Result<bool, BusError> {
+        let mut place = lock(&self.place);
+        let Some(place) = place.as_mut() else {
+            return Ok(false);
+        };
+        if place.directory.is_there() {
+            return Ok(false);
         }
+        place.directory = self.note(take(place.directory.path(), place.readers))?;
+        Ok(true)
+    }
+
+    /// Notes for `status` whether there is a directory.
+    fn note(&self, taken: std::io::Result<Directory>) -> Result<Directory, BusError> {
+        let taken = taken.map_err(|error| BusError::Off(error.to_string()));
+        *lock(&self.problem) = taken.as_ref().err().cloned();
+        taken
     }
 
     /// Removes the directory.
@@ -181,6 +189,16 @@ impl SampleBus {
             used_bytes: self.used_bytes.clone(),
         })
     }
+}
+
+/// Takes a directory for these readers.
+fn take(path: &Path, readers: Readers) -> std::io::Result<Directory> {
+    let mode = match readers {
+        Readers::Owner => 0o700,
+        Readers::All => 0o755,
+    };
+    let taken = Directory::take(path, mode);
+    taken.map_err(|error| std::io::Error::other(format!("{}: {error}", path.display())))
 }
 
 impl Ring {
