@@ -13,6 +13,11 @@ use std::path::{Path, PathBuf};
 /// The port on which robots take programs.
 const PORT: u16 = 8888;
 
+/// There is a tree, and nothing that says whose: somebody has removed that under a robot that runs.
+const UNKNOWN: &str = "a tree is mounted there, and nothing says where its robot takes programs: trik up did not mount it, or the folder trik in XDG_RUNTIME_DIR, or /tmp/trik-UID without that, was removed or is another one here; name the robot by its address, as trik up has printed it, or end it and start it again";
+const NOT_MOUNTED: &str =
+    "no virtual robot of yours is mounted there; robots in the network have names and addresses";
+
 /// A robot as somebody has named it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Target {
@@ -98,7 +103,10 @@ fn local() -> Result<Vec<Running>, Error> {
 fn mounted(all: &[Running], path: &Path) -> Result<Target, Error> {
     let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let Some(robot) = all.iter().find(|robot| robot.mountpoint == real) else {
-        let why = "no virtual robot of yours is mounted there; robots in the network have names and addresses";
+        let why = match trikfs::mount::is_mounted(&real) {
+            Ok(true) => UNKNOWN,
+            Ok(false) | Err(_) => NOT_MOUNTED,
+        };
         return Err(Error::file(path, why));
     };
     robot.trikd.map(Target::from).ok_or_else(|| deaf(robot))

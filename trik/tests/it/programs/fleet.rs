@@ -130,3 +130,22 @@ fn robots_side_by_side_send_each_other_messages() {
     home.run(&["stop", "--robot", &one.ip]).good();
     assert_eq!(listener.code(), Some(1));
 }
+
+#[test]
+fn a_robot_whose_records_were_removed_is_no_absent_one_and_has_its_address() {
+    let Some(reachable) = Reachable::new() else {
+        return;
+    };
+    let robot = &reachable.robot;
+    std::fs::remove_file(robot.home.base().join("robot.lock")).unwrap();
+    let tree = robot.path("");
+    for command in ["status", "stop"] {
+        let path = tree.to_str().expect("UTF-8");
+        let output = robot.home.run(&[command, "--robot", path]);
+        assert_ne!(output.code(), 0, "{}", output.stderr);
+        let why = "a tree is mounted there, and nothing says where its robot takes programs";
+        assert!(output.stderr.contains(why), "{}", output.stderr);
+        let output = robot.home.run(&[command, "--robot", reachable.ip()]);
+        output.good();
+    }
+}
