@@ -1,6 +1,6 @@
 //! The command line of `trikd`: commands, options, and which part of the crate carries them out.
 //!
-//! Owns the words, the help and the exit codes: 0 success, 1 refused or failed, 2 bad command line. The hidden commands are
+//! Owns the words, the help and the exit codes: 0 success, 1 refused or failed, 2 bad command line, 3 given up. The hidden commands are
 //! what `trikd` starts itself as: each is one child process.
 
 use crate::brick::Brick;
@@ -120,6 +120,9 @@ enum Command {
     },
 }
 
+/// The exit code of a guardian whose serving process crashed again and again: unlike a refusal it may be tried again.
+const GIVEN_UP: u8 = 3;
+
 /// The program: reads the arguments of the process, does it, gives the exit code.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -132,8 +135,12 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
+            let is_given_up = matches!(reason, Error::Crashes(..));
             report(reason);
-            ExitCode::FAILURE
+            match is_given_up {
+                true => ExitCode::from(GIVEN_UP),
+                false => ExitCode::FAILURE,
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The command line: the commands and options, and which part of the crate does each.
 //!
-//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. `run` mounts and serves,
+//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood, 3 given up. `run` mounts and serves,
 //! `author` has the commands for authors of converters, `paths` knows where files are looked for, `edit` changes the
 //! configuration of a mounted tree, `notify` speaks to a service manager.
 
@@ -49,7 +49,11 @@ Examples:
   trikfs new-converter --lang c sonar             start a converter of your own
   trikfs umount /trikfs
 
-Exit status: 0 success; 1 the configuration was refused, or something failed; 2 bad command line.";
+Exit status: 0 success; 1 the configuration was refused, or something failed; 2 bad command line;
+3 the tree was given up after crashes.";
+
+/// The exit code of a guardian whose daemon crashed again and again: unlike a refused configuration it may be tried again.
+const GIVEN_UP: u8 = 3;
 
 #[derive(Subcommand)]
 enum Command {
@@ -214,13 +218,16 @@ pub fn main() -> ExitCode {
         }
     };
     match perform(cli.command) {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Reported) => {}
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Reported) => ExitCode::FAILURE,
         Err(failure) => {
             let _ = writeln!(io::stderr(), "trikfs: {failure}");
+            match matches!(failure, Failure::Crashed(_)) {
+                true => ExitCode::from(GIVEN_UP),
+                false => ExitCode::FAILURE,
+            }
         }
     }
-    ExitCode::FAILURE
 }
 
 fn perform(command: Command) -> Result<(), Failure> {

@@ -215,7 +215,7 @@ fn a_daemon_that_crashes_again_and_again_is_given_up() {
         });
     }
     let status = m.wait();
-    assert_eq!(status.code(), Some(1), "{}", m.complaints());
+    assert_eq!(status.code(), Some(3), "{}", m.complaints());
     assert!(m.complaints().contains("giving up"), "{}", m.complaints());
     assert!(!m.is_mounted());
     assert_eq!(m.board().content("motor"), [0, 7]);
