@@ -6,6 +6,7 @@
 import { Link } from '../link/link';
 import type { News, Playback } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
+import { Clock } from './clock';
 import { Configuration } from './configuration.svelte';
 import { Debugger } from './debugger.svelte';
 import type { Past } from '../past/past.svelte';
@@ -36,6 +37,8 @@ interface Live extends Known {
 
 /** How many values in a second come to this page at most, of each node. */
 const RATE_HZ = 60;
+/** Facts of this name say where a recording is from. */
+const ABOUT = 'trikfs';
 /** Lines that are kept. */
 const LINES = 500;
 /** A line of the log is about the order that was refused so shortly before or after it. */
@@ -81,9 +84,7 @@ export class Robot {
   #recording = new Recording(this);
   #isDirty = false;
   readonly #decoder = new TextDecoder();
-  /** The robot's clock, in seconds, less that of this page. */
-  #ahead = 0;
-  #hasClock = false;
+  readonly #clock = new Clock();
 
   constructor(readonly address: string) {
     this.link = new Link(address, this);
@@ -103,7 +104,7 @@ export class Robot {
 
   /** The robot's clock, in seconds since 1970. */
   get clock(): number {
-    return Date.now() / 1000 + this.#ahead;
+    return this.#clock.at(Date.now() / 1000);
   }
 
   /** The moment that is shown. */
@@ -253,6 +254,7 @@ export class Robot {
   /** The robot is there: everything is told from now on. */
   #begin(): void {
     this.#recording = new Recording(this);
+    this.#clock.begin();
     this.link.request(`stream:;hz=${RATE_HZ}`);
     this.programs.begin();
     this.debugger.begin();
@@ -324,14 +326,13 @@ export class Robot {
     return mistake && performance.now() - mistake.at_ms < MISTAKE_MS ? mistake.text : undefined;
   }
 
-  facts(): void {
-    // Of the recording as a whole: nothing is shown of it.
+  facts(name: string, facts: ReadonlyMap<string, string>): void {
+    // Nothing is shown of them.
+    const offset_ns = name === ABOUT ? facts.get('realtime_offset_ns') : undefined;
+    if (offset_ns !== undefined) this.#clock.told(Number(offset_ns) / 1e9, Date.now() / 1000);
   }
 
-  /** The clocks differ by less than what a message is on its way, or by what was seen at the fastest one. */
   #hear(time: number): void {
-    const ahead = time - Date.now() / 1000;
-    if (!this.#hasClock || ahead > this.#ahead) this.#ahead = ahead;
-    this.#hasClock = true;
+    this.#clock.hear(time, Date.now() / 1000);
   }
 }
