@@ -3,7 +3,7 @@
 //! Owns these threads. Each call goes through [`Figures::call`], which says what is right. Knows no fault.
 
 use crate::figures::Figures;
-use crate::robot::{KNOWN, Robot, config};
+use crate::robot::{APART, KNOWN, Robot, config};
 use needs::Random;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -46,6 +46,7 @@ pub fn start(robot: &Arc<Robot>, figures: &Arc<Figures>, seed: u32) -> Vec<JoinH
         (reload, RELOAD),
         (clients, CLIENT),
         (look_around, 5 * PACE),
+        (crash, PACE),
     ];
     works.extend((0..READERS).map(|_| (read as Work, PACE)));
     let numbered = works.into_iter().zip(1..);
@@ -79,6 +80,19 @@ fn read(robot: &Robot, figures: &Figures, random: &mut Random) {
         "reads of known values",
         || first_bytes(&path, known.len()),
         |bytes| bytes == known,
+    );
+}
+
+/// A converter that crashes in its own process: the right value, or the error that says so.
+fn crash(robot: &Robot, figures: &Figures, _: &mut Random) {
+    let path = robot.mount.path("apart/device");
+    figures.call(
+        "reads of a converter that crashes",
+        || match first_bytes(&path, APART.len()) {
+            Err(error) if error.raw_os_error() == Some(libc::EIO) => Ok(true),
+            read => read.map(|bytes| bytes == APART),
+        },
+        |is_right| *is_right,
     );
 }
 

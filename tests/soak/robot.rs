@@ -35,12 +35,17 @@ pub fn config(extra: &str) -> String {
   lua = {{ src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1,
           converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0) + 1) end }},
   library = {{ src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1, converter = 'plus.so' }},
+  apart = {{ src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1, isolate = true, converter = 'crash.so' }},
   stream = {{ src = fake{{ data = 'abcd', period_ms = 5, loop = true }}, input_tuple_size = 1 }},
   {extra} = {{ src = '/dev/zero', input_tuple_size = 1 }},
 }}"
     )
 }
 
+/// What `apart` gives when its converter does not crash.
+pub const APART: [u8; 1] = [8];
+/// Crashes again and again, in its own process.
+const CRASH: &str = "int converter(int in_s, char *in, int out_s, char *out) { static int n; if (++n % 40 == 0) __builtin_trap(); out[0] = in[0] + 3; return 0; }";
 const PLUS_TWO: &str = "int converter(int in_s, char *in, int out_s, char *out) { out[0] = in[0] + 2; return in_s != out_s; }";
 
 /// A mounted tree and its daemon of clients.
@@ -97,6 +102,7 @@ impl Robot {
         board.file("motor", REST);
         board.file("in", [5]);
         board.library("plus.so", PLUS_TWO);
+        board.library("crash.so", CRASH);
         let mount = Mount::new(Setting {
             program: trikfs.to_str()?,
             board,

@@ -69,6 +69,9 @@ enum Command {
     /// configuration and programs that use it are those of a real robot. Prints one line when the tree can be used,
     /// and what to try, then shows the robot until Ctrl-C, SIGTERM, SIGHUP or an unmount. Then it brings all actuators
     /// to rest, unmounts and leaves nothing behind. Several may run side by side.
+    ///
+    /// Exit status: 0 you have ended it; 1 it could not be started, or something of it has failed; 2 the command line was not
+    /// understood.
     Up(Box<up::args::UpArgs>),
     /// Run a program on a robot and show what it prints.
     ///

@@ -74,6 +74,8 @@ pub(crate) enum Dcml {
     /// not understood.
     Sim(Box<sim::args::SimArgs>),
     /// List the models that come with the program, or print one of them.
+    ///
+    /// Exit status: 0 printed; 1 there is no model with this name; 2 the command line was not understood.
     Models(models::ModelsArgs),
     /// Write a model in another language: for programs, solvers, converters, papers.
     ///

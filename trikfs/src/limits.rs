@@ -179,6 +179,8 @@ pub const ISOLATED_LOAD_PATIENCE: Duration = Duration::from_secs(5);
 pub const ISOLATED_LOOK: Duration = Duration::from_millis(5);
 /// Bytes of tuples in the memory that it shares with the daemon, in each direction.
 pub const ISOLATED_BYTES: usize = 128 << 10;
+/// Tuples of one batch: how many of them are done is half a word.
+pub const ISOLATED_TUPLES: usize = 0xffff;
 /// Bytes up to which a single tuple travels in a message.
 pub const ISOLATED_TUPLE_BYTES: usize = 4 << 10;
 /// Bytes of one message: 256 params with their names are the longest.

@@ -20,7 +20,7 @@ use crate::events::lock;
 use crate::failure::Blame;
 use crate::limits::{
     ISOLATED_BYTES, ISOLATED_CALM, ISOLATED_LOAD_PATIENCE, ISOLATED_PATIENCE, ISOLATED_PAUSE,
-    ISOLATED_PAUSE_MAX, ISOLATED_TUPLE_BYTES,
+    ISOLATED_PAUSE_MAX, ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES,
 };
 use converter::{Conversion, Direction, Fault};
 use memory::Shared;
@@ -253,7 +253,10 @@ impl IsolatedStage {
 
     /// As many whole tuples as the shared memory holds, and at least one.
     fn batch(&mut self, input: &[u8], output: &mut [u8]) -> (usize, usize, Option<Fault>) {
-        let fitting = |bytes: usize, size: usize| bytes.min(ISOLATED_BYTES) / size;
+        let fitting = |bytes: usize, size: usize| {
+            let most = bytes.min(ISOLATED_BYTES) / size;
+            most.min(ISOLATED_TUPLES)
+        };
         let tuples = fitting(input.len(), self.input_size);
         let room = fitting(output.len(), self.output_size);
         let input = &input[..tuples * self.input_size];
@@ -272,12 +275,11 @@ impl IsolatedStage {
         if let Some(shared) = life.shared() {
             shared.put_input(input);
         }
-        let counts = |taken: u32, made: u32| {
-            let (taken, made) = (taken as usize, made as usize);
+        let counts = |taken: usize, made: usize| {
             (taken <= tuples && made <= room && made <= taken).then_some((taken, made))
         };
         let matter = match life.ask(&request, process.patience, true) {
-            Ok(Reply::Many { taken, made, fault }) => match counts(taken, made) {
+            Ok(Reply::Many { taken, made, fault }) => match counts(taken as usize, made as usize) {
                 // A batch without a fault ends where the tuples or the room do.
                 Some((taken, made)) if fault.is_some() || taken == tuples || made == room => {
                     life.take_output(&mut output[..made * self.output_size]);

@@ -4,7 +4,7 @@
 //! Owns where in it what is, its mapping, which is the only `unsafe` here, and the waiting for the other side. The daemon copies
 //! what it needs out before it looks at it, so that nothing changes under its hands, and the memory cannot be made shorter.
 
-use crate::limits::{ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES};
+use crate::limits::{ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES, ISOLATED_TUPLES};
 use nix::fcntl::{FcntlArg, SealFlag, fcntl};
 use nix::sys::memfd::{MFdFlags, memfd_create};
 use rustix::thread::futex;
@@ -16,11 +16,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 /// Numbers of four bytes, each in a line of the processor's cache of its own: whose turn it is, bytes of the message, and how
-/// many tuples of a batch were taken and made.
+/// many tuples of a batch were taken (its upper half) and made.
 const TURN_AT: usize = 0;
 const LENGTH_AT: usize = 64;
-const TAKEN_AT: usize = 128;
-const MADE_AT: usize = 192;
+const PROGRESS_AT: usize = 128;
 /// Where the message and the tuples begin; a page keeps them aligned for every converter.
 const MESSAGE_AT: usize = 4096;
 const INPUT_AT: usize = MESSAGE_AT + ISOLATED_MESSAGE_BYTES;
@@ -89,7 +88,7 @@ impl Shared {
     /// One of the numbers in front.
     fn number(&self, at: usize) -> &AtomicU32 {
         debug_assert!(at.is_multiple_of(4) && at < MESSAGE_AT);
-        // SAFETY: `at` is one of the four offsets above, inside the first page of the mapping, which lives as long as `self`, and
+        // SAFETY: `at` is one of the three offsets above, inside the first page of the mapping, which lives as long as `self`, and
         // aligned because a mapping begins at a page. Both sides use atomic operations alone on these bytes.
         unsafe { AtomicU32::from_ptr(self.start.add(at).as_ptr().cast()) }
     }
@@ -192,10 +191,9 @@ impl Shared {
     }
 
     /// How many tuples of the present batch were taken and made, says the process.
-    pub(super) fn progress(&self) -> (u32, u32) {
-        // In the order in which they are told, backwards: what counts as taken was made before.
-        let taken = self.number(TAKEN_AT).load(Ordering::Acquire);
-        (taken, self.number(MADE_AT).load(Ordering::Relaxed))
+    pub(super) fn progress(&self) -> (usize, usize) {
+        let both = self.number(PROGRESS_AT).load(Ordering::Acquire) as usize;
+        (both >> 16, both & ISOLATED_TUPLES)
     }
 
     // The side of the process.
@@ -242,10 +240,7 @@ impl Shared {
                 std::slice::from_raw_parts_mut(self.start.add(OUTPUT_AT).as_ptr(), output_bytes),
             )
         };
-        let progress = Progress {
-            taken: self.number(TAKEN_AT),
-            made: self.number(MADE_AT),
-        };
+        let progress = Progress(self.number(PROGRESS_AT));
         Some((input, output, progress))
     }
 }
@@ -258,18 +253,14 @@ impl Drop for Shared {
 }
 
 /// How far a batch has come, for the daemon, which looks only when it waits too long or the process has died.
-pub(super) struct Progress<'a> {
-    taken: &'a AtomicU32,
-    made: &'a AtomicU32,
-}
+pub(super) struct Progress<'a>(&'a AtomicU32);
 
 impl Progress<'_> {
-    /// So many tuples were taken and made.
+    /// So many tuples were taken and made, of no more than [`ISOLATED_TUPLES`].
+    #[inline]
     pub(super) fn tell(&self, taken: usize, made: usize) {
-        let word = |number| u32::try_from(number).unwrap_or(u32::MAX);
-        // A tuple is whole before it counts.
-        self.made.store(word(made), Ordering::Release);
-        self.taken.store(word(taken), Ordering::Release);
+        // The cast loses nothing of such numbers. A tuple is whole before it counts.
+        self.0.store((taken << 16 | made) as u32, Ordering::Release);
     }
 }
 
@@ -316,11 +307,11 @@ mod tests {
         let (input, output, progress) = process.batch(3, ISOLATED_BYTES).unwrap();
         assert_eq!(input, [1, 2, 3]);
         output[63] = 9;
-        progress.tell(2, 1);
+        progress.tell(ISOLATED_TUPLES, 1);
         let mut taken = [0; 64];
         daemon.take_output(&mut taken);
         assert_eq!((taken[0], taken[63]), (0, 9));
-        assert_eq!(daemon.progress(), (2, 1));
+        assert_eq!(daemon.progress(), (ISOLATED_TUPLES, 1));
         assert!(process.batch(ISOLATED_BYTES + 1, 0).is_none());
         assert!(process.batch(0, ISOLATED_BYTES + 1).is_none());
     }
