@@ -42,7 +42,7 @@ pub struct Mount {
     complaints: Arc<Mutex<String>>,
     listener: Option<JoinHandle<()>>,
     /// Dropping it tells the one who cuts off late mounts that all is well.
-    _alive: Sender<()>,
+    alive: Sender<Duration>,
     ready_line: String,
 }
 
@@ -135,16 +135,22 @@ impl Mount {
                 let _ = said.send(line);
             }
         });
-        let (alive, life) = channel::<()>();
+        let (alive, life) = channel::<Duration>();
         let (pid, point) = (guardian.id(), mountpoint.clone());
         std::thread::spawn(move || {
-            if life.recv_timeout(LIFE) == Err(RecvTimeoutError::Timeout) {
-                eprintln!(
-                    "{} lives for more than {LIFE:?}: it is cut off",
-                    point.display()
-                );
-                cut_off(pid, &point);
+            let mut most = LIFE;
+            loop {
+                match life.recv_timeout(most) {
+                    Ok(longer) => most = longer,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                    Err(RecvTimeoutError::Timeout) => break,
+                }
             }
+            eprintln!(
+                "{} lives for more than {most:?}: it is cut off",
+                point.display()
+            );
+            cut_off(pid, &point);
         });
         let mut mount = Self {
             board,
@@ -152,7 +158,7 @@ impl Mount {
             guardian: Some(guardian),
             complaints,
             listener: Some(listener),
-            _alive: alive,
+            alive,
             ready_line: String::new(),
         };
         match line.recv_timeout(SOON) {
@@ -160,6 +166,12 @@ impl Mount {
             Err(_) => panic!("{command:?} is not ready:\n{}", mount.complaints()),
         }
         mount
+    }
+
+    /// It may live for so long from now on.
+    pub fn lasts(&self, most: Duration) {
+        // The one who cuts it off has done so.
+        let _ = self.alive.send(most);
     }
 
     /// The devices.

@@ -101,6 +101,8 @@ fn main() -> ExitCode {
 fn run(robot: &Arc<Robot>, arguments: &Arguments) -> Arc<Figures> {
     let figures = Arc::new(Figures::new());
     let length = Duration::from_secs(60 * arguments.minutes);
+    // Of the end, some time too.
+    robot.mount.lasts(2 * length + Duration::from_secs(60));
     let mut threads = load::start(robot, &figures, arguments.seed);
     threads.push(faults::start(robot, &figures, arguments.seed));
     let begun = Instant::now();

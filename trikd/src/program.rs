@@ -35,7 +35,7 @@ use journal::write::Story;
 use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
-use output::Meter;
+use output::{Manner, Meter};
 pub use queue::{Command, Programs, Wish};
 use reaper::{Ended, Reaper};
 use recorder::kept::SaveReason;
@@ -325,7 +325,7 @@ impl Supervisor {
 
     async fn hear(&mut self, event: Event) {
         match event {
-            Event::Line(text) => self.show("print", &text),
+            Event::Line(text) => self.show(Manner::Print, &text),
             Event::Frame(text) => self.hear_frame(&text),
             Event::Ended(ended) => {
                 if let Some(current) = &mut self.current {
@@ -346,13 +346,13 @@ impl Supervisor {
             return;
         };
         match message {
-            FromProgram::Print(text) => self.show("print", text),
-            FromProgram::Info(text) => self.show("info", text),
+            FromProgram::Print(text) => self.show(Manner::Print, text),
+            FromProgram::Info(text) => self.show(Manner::Info, text),
             FromProgram::Error(text) => {
                 if let Some(current) = &mut self.current {
                     current.has_reported_error = true;
                 }
-                self.show("error", text);
+                self.show(Manner::Error, text);
             }
             FromProgram::Events => {
                 if let Some(current) = &mut self.current {
@@ -377,8 +377,12 @@ impl Supervisor {
                 self.around.record.line(Story::Diagram, "diagram", json);
             }
             FromProgram::Changed { is_changed, text } => {
-                let kind = if is_changed { "info" } else { "error" };
-                self.show(kind, text);
+                let manner = if is_changed {
+                    Manner::Info
+                } else {
+                    Manner::Error
+                };
+                self.show(manner, text);
             }
             FromProgram::Debug { client, json } => self.hear_debugger(client, json),
             FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
@@ -481,7 +485,7 @@ impl Supervisor {
                     Event::Ended(ended) => {
                         current.ended.get_or_insert((ended, Instant::now()));
                     }
-                    Event::Line(text) => self.show_last(current, "print", &text),
+                    Event::Line(text) => self.show_last(current, Manner::Print, &text),
                     Event::Frame(frame) => self.hear_last(current, &frame),
                 }
             }
@@ -516,8 +520,8 @@ impl Supervisor {
     fn report_end(&self, current: &mut Current, cause: &Cause) {
         let now = Instant::now();
         self.report_dropped(current.meter.take_dropped(now, true));
-        while let Some(message) = current.meter.release(now, true) {
-            self.broadcast(&message);
+        while let Some(said) = current.meter.release(now, true) {
+            self.tell(&said, &current.name);
         }
         let name = &current.name;
         let seconds = current.since.elapsed().as_secs_f64();

@@ -168,15 +168,22 @@ pub const COMPILE_SECONDS_MAX: u32 = 30;
 pub const COMPILE_OUTPUT_BYTES_MAX: usize = 64 << 10;
 /// KiB of memory that each process of a compiler may take.
 pub const COMPILE_MEMORY_KB_MAX: u32 = 512 << 10;
-/// How long an isolated converter may take for one tuple, beside the node's `budget_us`. Less than what makes a node count as
-/// stuck ([`STUCK_MS`]): its callers get their error before.
-pub const ISOLATED_PATIENCE: Duration = Duration::from_secs(1);
+/// How long an isolated converter may take for one tuple, beside the node's `budget_us`. Less than the usual `timeout_ms` and
+/// than what makes a node count as stuck ([`STUCK_MS`]): its callers get its own error before.
+pub const ISOLATED_PATIENCE: Duration = Duration::from_millis(800);
 /// How often that time may pass during a batch that goes on.
 pub const ISOLATED_BATCH_WAITS: u32 = 10;
 /// How long its process may take to load a library.
 pub const ISOLATED_LOAD_PATIENCE: Duration = Duration::from_secs(5);
 /// How often it is looked whether a process that has not answered yet is dead.
 pub const ISOLATED_LOOK: Duration = Duration::from_millis(5);
+/// How long it may take to close the states of files that are closed.
+pub const ISOLATED_CLOSE_PATIENCE: Duration = Duration::from_millis(200);
+/// Time without a word after which it is asked first whether the process still lives: one that somebody has ended costs nobody
+/// a tuple then.
+pub const ISOLATED_IDLE: Duration = Duration::from_millis(20);
+/// How often a process that nobody asks looks whether its daemon lives, beside what the kernel does.
+pub const ISOLATED_ORPHAN_LOOK: Duration = Duration::from_secs(10);
 /// Bytes of tuples in the memory that it shares with the daemon, in each direction.
 pub const ISOLATED_BYTES: usize = 128 << 10;
 /// Tuples of one batch: how many of them are done is half a word.
@@ -189,6 +196,8 @@ pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
 pub const ISOLATED_LOG_LINES: usize = 16;
 /// Bytes of memory that all its states may take together.
 pub const ISOLATED_DATA_BYTES: libc::rlim_t = 64 << 20;
+/// Bytes of addresses beside those of the program and that memory: libraries, and what no limit of data counts.
+pub const ISOLATED_LIBRARY_BYTES: libc::rlim_t = 64 << 20;
 /// Pause before another process is started after a second death; it doubles with each,
 pub const ISOLATED_PAUSE: Duration = Duration::from_millis(100);
 /// ... up to this.

@@ -144,7 +144,7 @@ fn whatever_machine_code_does_costs_its_own_node_an_error_and_no_other_node_its_
     assert_eq!(m.daemon(), daemon, "the daemon was not replaced");
     let log = m.log();
     assert!(
-        log.contains("bad: hostile.so: its process was ended by SIGSEGV; its states begin anew"),
+        log.contains("bad: converter: hostile.so: its process was ended by SIGSEGV, and its states begin anew"),
         "{log}"
     );
 }
@@ -371,5 +371,151 @@ fn an_actuator_whose_converter_is_isolated_moves_and_rests() {
         m.board().content("motor"),
         [0xff],
         "at rest, by its converter"
+    );
+}
+
+/// As `kill` does, from outside.
+fn signal(process: u32, signal: Signal) {
+    kill(Pid::from_raw(process.cast_signed()), signal).unwrap();
+}
+
+#[test]
+fn what_an_earlier_batch_has_left_is_never_given_again() {
+    let board = Board::new();
+    board.library("hostile.so", HOSTILE);
+    board.fifo("in");
+    let config = "trikfs = { bad = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 2, share = false, isolate = true, converter = 'hostile.so' } }";
+    let Some(m) = mount_on(board, config) else {
+        return;
+    };
+    // The process is stopped, so it dies of its time before it looks at the second batch.
+    m.python(&format!(
+        "
+def children(parent):
+    found = []
+    for name in os.listdir('/proc'):
+        try:
+            words = open('/proc/' + name + '/stat').read().rsplit(')', 1)[1].split()
+        except (OSError, IndexError):
+            continue
+        if int(words[1]) == parent: found.append(int(name))
+    return found
+fd, pipe = open_ro(M + '/bad/device'), feed('in')
+os.write(pipe, b'AAAA')
+assert os.read(fd, 1024) == b'A\x01A\x02A\x03A\x04'
+os.kill(children({0})[0], 19)
+os.write(pipe, b'BBBB')
+expect('EIO', os.read, fd, 1024)
+got = os.read(fd, 1024)
+assert got == b'B\x01B\x02B\x03', got
+old = children({0})[0]
+os.kill(old, 9)
+eventually(lambda: open('/proc/%d/stat' % old).read().rsplit(')', 1)[1].split()[0] == 'Z', 'its end')
+threading.Event().wait(0.1)
+os.write(pipe, b'CC')
+got = os.read(fd, 1024)
+assert got == b'C\x01C\x02', (got, 'ended while nobody asked it: costs nobody a tuple')
+",
+        m.daemon()
+    ));
+}
+
+#[test]
+fn a_rest_does_not_depend_on_the_process_of_the_converter() {
+    let board = Board::new();
+    board.file("motor", [0; 1]);
+    let config = "trikfs = { motor = { src = attribute{ path = '$DIR/motor' }, input_tuple_size = 1, format = 'i8 power', rest = 5, isolate = true,
+      converter = { code = 'int converter(int a, char *in, int b, char *out) { out[0] = in[0] + 1; return 0; }' },
+      write_converter = { code = 'int converter(int a, char *in, int b, char *out) { if (in[0] == 99) __builtin_trap(); out[0] = in[0] - 1; return 0; }' } } }";
+    let Some(m) = mount_on(board, config) else {
+        return;
+    };
+    let motor = || m.board().content("motor");
+    for how in [Signal::SIGKILL, Signal::SIGSTOP] {
+        eventually("a write", || m.write("motor/value", "30").is_ok());
+        assert_eq!(motor(), [29], "{how}");
+        signal(process_of(&m), how);
+        let start = Instant::now();
+        m.write("stop", "1").unwrap();
+        assert_eq!(motor(), [4], "{how}");
+        assert!(start.elapsed() < Duration::from_millis(500), "{how}");
+    }
+    // A program that has made it crash again and again, and is gone then.
+    eventually("a write", || m.write("motor/value", "30").is_ok());
+    m.try_sh("exec 3> motor/device; printf ' ' >&3; for n in 1 2 3; do printf c >&3; done");
+    eventually("rest after the program", || motor() == [4]);
+}
+
+#[test]
+fn what_a_constructor_prepares_is_undone_before_the_first_tuple() {
+    let head = "#include <fcntl.h>\n#include <errno.h>\n#include <signal.h>\n#include <stddef.h>\n#include <sys/mman.h>\n#include <sys/prctl.h>\n#include <unistd.h>\nstatic int kept, told;\n__attribute__((constructor)) static void begin(void) { ";
+    let tail = " }\nint converter(int a, char *in, int b, char *out) { ";
+    let cases = [
+        // A descriptor that is open.
+        (
+            "kept = open(\"/etc/hostname\", O_RDONLY);",
+            "return read(kept, out, 1) < 0 ? errno : 77; }",
+            9,
+        ),
+        // Signals for others, by the owner of a descriptor.
+        (
+            "kept = open(\"/\", O_RDONLY); told = fcntl(kept, F_SETOWN, getppid()) < 0 ? errno : 77;",
+            "return told; }",
+            1,
+        ),
+        // A life after the daemon's.
+        (
+            "told = prctl(PR_SET_PDEATHSIG, 0) < 0 ? errno : 77;",
+            "return told; }",
+            1,
+        ),
+        // Memory that is no data.
+        (
+            "",
+            "for (int n = 0; n < 400; n++) { char *p = mmap(NULL, 1 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0); if (p == MAP_FAILED) return errno; p[0] = 1; } return 77; }",
+            12,
+        ),
+    ];
+    let board = Board::new();
+    let mut config = "trikfs = {}\n".to_owned();
+    for (number, (begin, convert, _)) in cases.iter().enumerate() {
+        let library = format!("case{number}.so");
+        board.library(&library, &format!("{head}{begin}{tail}{convert}"));
+        config.push_str(&format!("trikfs.case{number} = {{ src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1, isolate = true, converter = '{library}' }}\n"));
+    }
+    let Some(m) = mount_on(board, &config) else {
+        return;
+    };
+    for (number, (_, _, result)) in cases.iter().enumerate() {
+        assert_eq!(m.errno(&format!("case{number}/device")), libc::EIO);
+        let fault = m.text(&format!("case{number}/fault"));
+        let wanted = format!("converter returned {result}\n");
+        assert!(fault.ends_with(&wanted), "case {number}: {fault}");
+    }
+}
+
+#[test]
+fn a_library_that_keeps_its_rights_is_refused() {
+    let board = Board::new();
+    // A filter of its own: whatever comes after it fails, as if the kernel had none.
+    board.library(
+        "keeps.so",
+        "#include <errno.h>\n#include <stddef.h>\n#include <linux/filter.h>\n#include <linux/seccomp.h>\n#include <sys/prctl.h>\n#include <sys/syscall.h>\n#include <unistd.h>
+__attribute__((constructor)) static void begin(void) {
+  struct sock_filter code[] = { { 0x20, 0, 0, 0 }, { 0x15, 0, 1, SYS_seccomp }, { 6, 0, 0, 0x00050000 | EPERM }, { 6, 0, 0, 0x7fff0000 } };
+  struct sock_fprog program = { 4, code };
+  syscall(SYS_seccomp, 1, 0, &program);
+}
+int converter(int a, char *in, int b, char *out) { return 0; }",
+    );
+    board.file("robot.lua", "trikfs = {\n  n = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1, isolate = true, converter = 'keeps.so' } }");
+    let output = trikfs(&board, &["check", "robot.lua"], b"");
+    assert_eq!(output.code(), 1, "{}", output.stderr);
+    assert!(
+        output
+            .stderr
+            .contains("does not let the right to open files be taken"),
+        "{}",
+        output.stderr
     );
 }

@@ -3,6 +3,7 @@
 //! Owns the splitting, the meter, and which messages of a burst are left out: those in its middle. Knows no processes.
 
 use crate::limits;
+use journal::standard::Level;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -56,13 +57,60 @@ impl Lines {
     }
 }
 
+/// How a program says something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// It prints a line.
+    Print,
+    /// It tells clients something.
+    Info,
+    /// It tells them what went wrong.
+    Error,
+}
+
+impl Manner {
+    /// What the message begins with.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Print => "print",
+            Self::Info => "info",
+            Self::Error => "error",
+        }
+    }
+
+    /// What it is in a recording.
+    pub fn level(self) -> Level {
+        match self {
+            Self::Print | Self::Info => Level::Info,
+            Self::Error => Level::Error,
+        }
+    }
+}
+
+/// One message of a program for all clients.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// How it is said.
+    pub manner: Manner,
+    /// What clients get.
+    pub message: String,
+}
+
+impl Message {
+    /// This text, with the word in front that clients know it by.
+    pub fn new(manner: Manner, text: &str) -> Self {
+        let message = format!("{}: {text}", manner.word());
+        Self { manner, message }
+    }
+}
+
 /// Lets so many messages and bytes through in a second, holds the newest of the others, and counts those that are lost.
 #[derive(Debug)]
 pub struct Meter {
     messages: f64,
     bytes: f64,
     at: Instant,
-    held: VecDeque<String>,
+    held: VecDeque<Message>,
     held_bytes: usize,
     dropped: u32,
     dropped_since: Option<Instant>,
@@ -84,19 +132,20 @@ impl Default for Meter {
 
 impl Meter {
     /// Takes a message: gives it back if it may pass now, else holds it until [`Meter::release`].
-    pub fn offer(&mut self, message: String, now: Instant) -> Option<String> {
-        if self.held.is_empty() && self.admits(message.len(), now) {
-            return Some(message);
+    pub fn offer(&mut self, said: Message, now: Instant) -> Option<Message> {
+        let size = said.message.len();
+        if self.held.is_empty() && self.admits(size, now) {
+            return Some(said);
         }
-        self.held_bytes += message.len();
-        self.held.push_back(message);
+        self.held_bytes += size;
+        self.held.push_back(said);
         while self.held.len() > limits::OUTPUT_HELD_MESSAGES
             || self.held_bytes > limits::OUTPUT_HELD_BYTES
         {
             let Some(oldest) = self.held.pop_front() else {
                 break;
             };
-            self.held_bytes -= oldest.len();
+            self.held_bytes -= oldest.message.len();
             self.dropped = self.dropped.saturating_add(1);
             self.dropped_since.get_or_insert(now);
         }
@@ -105,8 +154,8 @@ impl Meter {
 
     /// The next message that was held, if it may pass now or nothing more comes. What was lost before it is told first:
     /// until [`Meter::take_dropped`] has said how much that was, it waits.
-    pub fn release(&mut self, now: Instant, is_over: bool) -> Option<String> {
-        let size = self.held.front()?.len();
+    pub fn release(&mut self, now: Instant, is_over: bool) -> Option<Message> {
+        let size = self.held.front()?.message.len();
         if !is_over && (self.dropped_since.is_some() || !self.admits(size, now)) {
             return None;
         }
@@ -177,17 +226,32 @@ mod tests {
 
     /// All that comes out now.
     fn released(meter: &mut Meter, now: Instant, is_over: bool) -> Vec<String> {
-        std::iter::from_fn(|| meter.release(now, is_over)).collect()
+        let all = std::iter::from_fn(|| meter.release(now, is_over));
+        all.map(|said| said.message).collect()
+    }
+
+    /// What comes of a printed text.
+    fn offered(meter: &mut Meter, text: &str, now: Instant) -> Option<String> {
+        let passed = meter.offer(Message::new(Manner::Print, text), now);
+        passed.map(|said| said.message)
+    }
+
+    #[test]
+    fn only_an_error_is_one_whatever_its_text_is() {
+        let said = Message::new(Manner::Print, "error: 5");
+        assert_eq!(said.message, "print: error: 5");
+        assert_eq!(said.manner.level(), Level::Info);
+        assert_eq!(Manner::Error.level(), Level::Error);
     }
 
     #[test]
     fn a_flood_loses_its_middle_which_is_counted() {
         let mut meter = Meter::default();
         let start = Instant::now();
-        let offered = (0..10_000).map(|number| meter.offer(number.to_string(), start));
-        let passed: Vec<_> = offered.flatten().collect();
+        let all = (0..10_000).filter_map(|number| offered(&mut meter, &number.to_string(), start));
+        let passed: Vec<_> = all.collect();
         let count = limits::OUTPUT_MESSAGES_PER_SECOND as usize;
-        assert_eq!((passed.len(), &*passed[count - 1]), (count, "999"));
+        assert_eq!((passed.len(), &*passed[count - 1]), (count, "print: 999"));
         assert_eq!(meter.take_dropped(start, false), None);
         assert!(released(&mut meter, start, false).is_empty());
         let soon = start + Duration::from_millis(900);
@@ -200,11 +264,11 @@ mod tests {
         assert_eq!(meter.take_dropped(later, false), u32::try_from(lost).ok());
         let last = released(&mut meter, later, false);
         assert_eq!(last.len(), limits::OUTPUT_HELD_MESSAGES);
-        assert_eq!(last.last().map(String::as_str), Some("9999"));
+        assert_eq!(last.last().map(String::as_str), Some("print: 9999"));
         assert_eq!(meter.take_dropped(later, true), None);
         assert_eq!(
-            meter.offer("next".to_owned(), later).as_deref(),
-            Some("next")
+            offered(&mut meter, "next", later).as_deref(),
+            Some("print: next")
         );
     }
 
@@ -212,11 +276,11 @@ mod tests {
     fn at_the_end_all_that_is_held_comes_and_long_messages_are_held_by_their_bytes() {
         let mut meter = Meter::default();
         let start = Instant::now();
-        while meter.offer("x".repeat(60_000), start).is_some() {}
-        assert_eq!(meter.offer("y".repeat(60_000), start), None);
+        while offered(&mut meter, &"x".repeat(60_000), start).is_some() {}
+        assert_eq!(offered(&mut meter, &"y".repeat(60_000), start), None);
         let last = released(&mut meter, start, true);
         assert_eq!(last.len(), 1);
-        assert!(last[0].starts_with('y'));
+        assert!(last[0].starts_with("print: y"));
         assert_eq!(meter.take_dropped(start, true), Some(1));
     }
 }

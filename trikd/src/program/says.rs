@@ -2,16 +2,16 @@
 //!
 //! Owns what is held back, cut and dropped of it, and what counts of a program that is dead. `output` has the measures.
 
+use super::output::{Manner, Message};
 use super::{Current, Supervisor};
 use crate::limits;
 use crate::protocol::program::FromProgram;
-use journal::standard::Level;
 use journal::write::Story;
 use std::time::Instant;
 
 impl Supervisor {
     /// Shows something that the program said, unless it says too much.
-    pub(super) fn show(&mut self, kind: &str, text: &str) {
+    pub(super) fn show(&mut self, manner: Manner, text: &str) {
         let Some(current) = &mut self.current else {
             return;
         };
@@ -20,24 +20,25 @@ impl Supervisor {
         while !text.is_char_boundary(end) {
             end -= 1;
         }
-        let message = format!("{kind}: {}", &text[..end]);
-        let shown = current.meter.offer(message, now);
+        let shown = current.meter.offer(Message::new(manner, &text[..end]), now);
         self.show_held();
-        if let Some(message) = shown {
-            self.say(&message);
+        if let Some(said) = shown {
+            self.say(&said);
         }
     }
 
-    /// Something that a program said, for all who hear.
-    fn say(&self, message: &str) {
-        self.broadcast(message);
-        if self.around.record.is_heard() {
-            let name = self.current.as_ref().map_or("", |current| &current.name);
-            let level = match message.starts_with("error: ") {
-                true => Level::Error,
-                false => Level::Info,
-            };
-            (self.around.record).level(Story::Output, level, name, message);
+    /// Something that the program of now said, for all who hear.
+    fn say(&self, said: &Message) {
+        let name = self.current.as_ref().map_or("", |current| &current.name);
+        self.tell(said, name);
+    }
+
+    /// Something that the program with this name said.
+    pub(super) fn tell(&self, said: &Message, name: &str) {
+        self.broadcast(&said.message);
+        let record = &self.around.record;
+        if record.is_heard() {
+            record.level(Story::Output, said.manner.level(), name, &said.message);
         }
     }
 
@@ -50,8 +51,8 @@ impl Supervisor {
         let dropped = current.meter.take_dropped(now, false);
         let held: Vec<_> = std::iter::from_fn(|| current.meter.release(now, false)).collect();
         self.report_dropped(dropped);
-        for message in held {
-            self.say(&message);
+        for said in held {
+            self.say(&said);
         }
     }
 
@@ -64,11 +65,11 @@ impl Supervisor {
     /// Of a program that is dead only what it wanted to show counts.
     pub(super) fn hear_last(&self, current: &mut Current, frame: &str) {
         match FromProgram::parse(frame) {
-            Some(FromProgram::Print(text)) => self.show_last(current, "print", text),
-            Some(FromProgram::Info(text)) => self.show_last(current, "info", text),
+            Some(FromProgram::Print(text)) => self.show_last(current, Manner::Print, text),
+            Some(FromProgram::Info(text)) => self.show_last(current, Manner::Info, text),
             Some(FromProgram::Error(text)) => {
                 current.has_reported_error = true;
-                self.show_last(current, "error", text);
+                self.show_last(current, Manner::Error, text);
             }
             Some(
                 FromProgram::Events
@@ -84,13 +85,11 @@ impl Supervisor {
         }
     }
 
-    pub(super) fn show_last(&self, current: &mut Current, kind: &str, text: &str) {
+    pub(super) fn show_last(&self, current: &mut Current, manner: Manner, text: &str) {
         if text.len() <= limits::MESSAGE_BYTES {
-            let shown = current
-                .meter
-                .offer(format!("{kind}: {text}"), Instant::now());
-            if let Some(message) = shown {
-                self.say(&message);
+            let said = Message::new(manner, text);
+            if let Some(said) = current.meter.offer(said, Instant::now()) {
+                self.tell(&said, &current.name);
             }
         }
     }

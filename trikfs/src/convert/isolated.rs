@@ -19,8 +19,9 @@ use super::shared::{INLINE, LibraryError, OpenInfo, Wrong, label, shown};
 use crate::events::lock;
 use crate::failure::Blame;
 use crate::limits::{
-    ISOLATED_BYTES, ISOLATED_CALM, ISOLATED_LOAD_PATIENCE, ISOLATED_PATIENCE, ISOLATED_PAUSE,
-    ISOLATED_PAUSE_MAX, ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES,
+    ISOLATED_BYTES, ISOLATED_CALM, ISOLATED_CLOSE_PATIENCE, ISOLATED_LOAD_PATIENCE,
+    ISOLATED_LOG_LINES, ISOLATED_PATIENCE, ISOLATED_PAUSE, ISOLATED_PAUSE_MAX,
+    ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES,
 };
 use converter::{Conversion, Direction, Fault};
 use memory::Shared;
@@ -128,7 +129,15 @@ impl Isolated {
         let mut life = lock(&self.life);
         let lost = |lost: Refused| wrong(Wrong::Lost(lost.to_string()));
         life.start().map_err(lost)?;
-        life.load(&load).map_err(wrong)?;
+        if let Err(refusal) = life.load(&load) {
+            return Err(wrong(match refusal {
+                LoadRefusal::Wrong(why) => why,
+                LoadRefusal::Lost(lost) => {
+                    life.forget(&lost);
+                    Wrong::Lost(lost.to_string())
+                }
+            }));
+        }
         life.loads.push(load);
         Ok(Apart {
             process: Arc::clone(self),
@@ -321,8 +330,8 @@ impl IsolatedStage {
         let lost = match life.ask(&request, self.apart.process.patience, false) {
             Ok(Reply::Opened { instance, log }) => {
                 self.place = Some((life.generation, instance));
-                for line in log {
-                    (self.log)(&line);
+                for line in log.iter().take(ISOLATED_LOG_LINES) {
+                    (self.log)(line);
                 }
                 return Ok(instance);
             }
@@ -333,14 +342,10 @@ impl IsolatedStage {
         Err(self.lost(life, &lost))
     }
 
-    /// The process is gone: it is told in the log, once, and to this caller.
+    /// The process is gone, as this caller is told.
     fn lost(&self, life: &mut Life, lost: &Lost) -> Fault {
         life.forget(lost);
-        let fault = self.labelled(lost);
-        (self.log)(&format!(
-            "{fault}; its states begin anew in another process"
-        ));
-        fault
+        self.labelled(&format_args!("{lost}, and its states begin anew"))
     }
 
     fn labelled(&self, why: &dyn std::fmt::Display) -> Fault {
@@ -360,16 +365,16 @@ impl Drop for IsolatedStage {
 }
 
 impl Isolated {
-    /// Closes the states of files that are closed.
+    /// Closes the states of files that are closed, all of them within a short time.
     fn leave(&self, life: &mut Life) {
+        let until = Instant::now() + ISOLATED_CLOSE_PATIENCE;
         for (generation, instance) in std::mem::take(&mut *lock(&self.left)) {
             if generation != life.generation || life.running.is_none() {
                 continue;
             }
-            if let Err(lost) = life
-                .ask(&Request::Close { instance }, self.patience, false)
-                .map(drop)
-            {
+            let patience = until.saturating_duration_since(Instant::now());
+            let closed = life.ask(&Request::Close { instance }, patience, false);
+            if let Err(lost) = closed.map(drop) {
                 life.forget(&lost);
             }
         }
@@ -379,6 +384,11 @@ impl Isolated {
 impl Life {
     /// There is a process with everything loaded, or the pause until there may be another one is not over.
     fn start(&mut self) -> Result<(), Refused> {
+        // It has not died of a tuple, so nobody loses one, and the next process is not late.
+        if self.running.as_mut().is_some_and(Running::is_gone) {
+            self.running = None;
+            self.lost = None;
+        }
         if self.running.is_some() {
             return Ok(());
         }
@@ -388,7 +398,7 @@ impl Life {
         {
             return Err(Refused {
                 why: why.clone(),
-                again: Some(*not_before - now),
+                is_pause: true,
             });
         }
         let started = Running::start().map_err(Lost::NotStarted);
@@ -401,7 +411,7 @@ impl Life {
             self.forget(&lost);
             Refused {
                 why: lost.to_string(),
-                again: None,
+                is_pause: false,
             }
         })
     }
@@ -409,9 +419,10 @@ impl Life {
     /// Loads into a new process what the one before had.
     fn fill(&mut self) -> Result<(), Lost> {
         for load in self.loads.clone() {
-            if let Err(why) = self.load(&load) {
-                return Err(Lost::NotStarted(std::io::Error::other(why.to_string())));
-            }
+            self.load(&load).map_err(|refusal| match refusal {
+                LoadRefusal::Wrong(why) => Lost::NotLoaded(load.shown.clone(), why.to_string()),
+                LoadRefusal::Lost(lost) => lost,
+            })?;
         }
         if self.is_sealed {
             self.seal()?;
@@ -419,26 +430,33 @@ impl Life {
         Ok(())
     }
 
-    fn load(&mut self, load: &Load) -> Result<(), Wrong> {
+    fn load(&mut self, load: &Load) -> Result<(), LoadRefusal> {
         let request = Request::Load(load.clone());
-        let lost = match self.ask(&request, ISOLATED_LOAD_PATIENCE, false) {
-            Ok(Reply::Done) => return Ok(()),
+        match self.ask(&request, ISOLATED_LOAD_PATIENCE, false) {
+            Ok(Reply::Done) => Ok(()),
             Ok(Reply::Refused { blame, why }) => {
-                return Err(Wrong::Told(blame_of(blame), why));
+                Err(LoadRefusal::Wrong(Wrong::Told(blame_of(blame), why)))
             }
-            Ok(_) => Lost::Rubbish,
-            Err(lost) => lost,
-        };
-        self.forget(&lost);
-        Err(Wrong::Lost(lost.to_string()))
+            Ok(_) => Err(LoadRefusal::Lost(Lost::Rubbish)),
+            Err(lost) => Err(LoadRefusal::Lost(lost)),
+        }
     }
 
     fn seal(&mut self) -> Result<bool, Lost> {
-        match self.ask(&Request::Seal, ISOLATED_LOAD_PATIENCE, false) {
-            Ok(Reply::Sealed { is_confined }) => Ok(is_confined),
-            Ok(_) => Err(Lost::Rubbish),
-            Err(lost) => Err(lost),
+        let (is_confined, is_resisted) =
+            match self.ask(&Request::Seal, ISOLATED_LOAD_PATIENCE, false)? {
+                Reply::Sealed {
+                    is_confined,
+                    is_resisted,
+                } => (is_confined, is_resisted),
+                _ => return Err(Lost::Rubbish),
+            };
+        let running = self.running.as_ref();
+        let is_ours = running.is_some_and(Running::has_our_filters);
+        if is_resisted || (is_confined && !is_ours) {
+            return Err(Lost::Resists);
         }
+        Ok(is_confined)
     }
 
     /// A question and its answer.
@@ -477,19 +495,26 @@ impl Life {
     }
 }
 
+/// Why a library is not loaded there.
+enum LoadRefusal {
+    Wrong(Wrong),
+    Lost(Lost),
+}
+
 /// Why there is no process.
 struct Refused {
     why: String,
-    /// How long until another one is tried.
-    again: Option<Duration>,
+    /// Another one is tried after a pause.
+    is_pause: bool,
 }
 
 impl std::fmt::Display for Refused {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.why)?;
-        match self.again {
-            Some(again) => write!(f, "; another one is started in {} ms", again.as_millis()),
-            None => Ok(()),
+        // Without a time: each other text would be another line of the log.
+        match self.is_pause {
+            true => f.write_str("; another one is started soon"),
+            false => Ok(()),
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::regulation::Regulation;
 use crate::sample_bus::Ring;
 use config::description::NodeDescription;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 
 /// What a write to one node has to do with.
 pub struct Driving {
@@ -39,6 +39,8 @@ pub struct Driving {
     pub written: Written,
     /// What is written, in shared memory.
     ring: Mutex<Option<Ring>>,
+    /// The rest as the device gets it, if the converter is not in this process.
+    rest_bytes: OnceLock<Vec<u8>>,
 }
 
 impl Driving {
@@ -72,7 +74,19 @@ impl Driving {
             writes: AtomicU32::new(0),
             written: Written::new(description.read_back),
             ring: Mutex::default(),
+            rest_bytes: OnceLock::new(),
         }
+    }
+
+    /// The rest as the device gets it, if it must not depend on the converter.
+    pub(super) fn rest_bytes(&self) -> Option<&[u8]> {
+        self.rest_bytes.get().map(Vec::as_slice)
+    }
+
+    /// Keeps that.
+    pub(super) fn keep_rest_bytes(&self, bytes: &[u8]) {
+        // It is the same each time.
+        let _ = self.rest_bytes.set(bytes.to_vec());
     }
 
     /// Whether the actuator may be anything but at rest.

@@ -59,10 +59,19 @@ impl Node {
         }
         let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
         loop {
-            let outcome = self.open_writer(None).and_then(|mut writer| {
-                let _turn = self.take_turn();
-                writer.write_whole(&tuple, true)
-            });
+            let outcome = match self.driving.rest_bytes() {
+                // Nobody waits for a converter in another process, which may be dead or stopped.
+                Some(bytes) => self.raw_sink().and_then(|mut sink| {
+                    let _turn = self.take_turn();
+                    sink.write(bytes, true)?;
+                    self.driving.went(&tuple);
+                    Ok(())
+                }),
+                None => self.open_writer(None).and_then(|mut writer| {
+                    let _turn = self.take_turn();
+                    writer.write_whole(&tuple, true)
+                }),
+            };
             match outcome {
                 Err(error) if error.is_busy_device() && Instant::now() < deadline => {
                     std::thread::sleep(limits::REST_PAUSE);
@@ -81,14 +90,20 @@ impl Node {
             // What it drives has a rest of its own.
             return Ok(None);
         }
-        match self.rest_tuple()? {
-            Some(tuple) => self.action_of(&tuple),
-            None => Ok(None),
+        let Some(tuple) = self.rest_tuple()? else {
+            return Ok(None);
+        };
+        let Some(converted) = self.converted(&tuple)? else {
+            return Ok(None);
+        };
+        if self.description.isolate {
+            self.driving.keep_rest_bytes(&converted);
         }
+        self.action_of(converted)
     }
 
-    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
-    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
+    /// What the device of this node, or the node that it writes to, gets for a tuple; None: nothing.
+    fn converted(&self, tuple: &[u8]) -> Result<Option<Vec<u8>>, Error> {
         let mut converted = vec![0; self.device_tuple_size()];
         let pipeline = self.open_pipeline()?;
         let batch = self.convert(
@@ -100,14 +115,20 @@ impl Node {
         if let Some(error) = batch.fault {
             return Err(error);
         }
-        if batch.produced == 0 {
-            return Ok(None);
-        }
+        Ok((batch.produced > 0).then_some(converted))
+    }
+
+    /// The action that has the effect of what was converted, through all nodes on the way to a device.
+    fn action_of(&self, converted: Vec<u8>) -> Result<Option<RestAction>, Error> {
         let sink = self.description.source.innermost();
         match sink.resting() {
             Resting::Node(path) => {
                 let other = self.links.iter().find(|(name, _)| name == path);
-                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
+                let Some((_, other)) = other else {
+                    return Ok(None);
+                };
+                let further = other.converted(&converted)?;
+                further.map_or(Ok(None), |converted| other.action_of(converted))
             }
             Resting::Device => Ok(Some(RestAction {
                 sink: sink.clone(),

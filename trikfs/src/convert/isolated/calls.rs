@@ -34,6 +34,7 @@ const ALWAYS: &[c_long] = &[
     libc::SYS_madvise,
     libc::SYS_getrandom,
     libc::SYS_getpid,
+    libc::SYS_getppid,
     libc::SYS_gettid,
     libc::SYS_sched_yield,
     libc::SYS_sched_getaffinity,
@@ -68,14 +69,13 @@ const LOADING: &[c_long] = &[
     libc::SYS_fstat,
     libc::SYS_pread64,
     libc::SYS_readv,
+    libc::SYS_getdents64,
     libc::SYS_lseek,
-    libc::SYS_fcntl,
     libc::SYS_faccessat,
     libc::SYS_readlinkat,
     libc::SYS_getcwd,
     libc::SYS_uname,
     libc::SYS_statx,
-    libc::SYS_prctl,
     libc::SYS_seccomp,
     libc::SYS_getuid,
     libc::SYS_geteuid,
@@ -101,7 +101,6 @@ const LOADING_HERE: &[c_long] = &[
     libc::SYS_lstat64,
     libc::SYS_access,
     libc::SYS_readlink,
-    libc::SYS_fcntl64,
     libc::SYS__llseek,
     libc::SYS_getuid32,
     libc::SYS_geteuid32,
@@ -180,7 +179,8 @@ fn filter(stage: Stage, architecture: u32, own: u32) -> BpfProgram {
             instruction(AND, one.bits, 0, 0),
             instruction(JUMP_EQUAL, one.wanted, 0, 1),
             answer(ALLOW),
-            answer(DENY),
+            // Another entry may allow it for other reasons.
+            instruction(LOAD, NUMBER_AT, 0, 0),
         ]);
     }
     program.push(answer(DENY));
@@ -212,6 +212,15 @@ fn lists(stage: Stage, own: u32) -> (Vec<c_long>, Vec<Guarded>) {
             guarded.push(reading(libc::SYS_openat, 2));
             #[cfg(any(target_arch = "x86_64", target_arch = "arm"))]
             guarded.push(reading(libc::SYS_open, 1));
+            // What puts the second filter in force, and nothing that undoes the death with the daemon.
+            guarded.extend(
+                [libc::PR_SET_NO_NEW_PRIVS, libc::PR_SET_SECCOMP].map(|what| Guarded {
+                    call: libc::SYS_prctl,
+                    argument: 0,
+                    bits: u32::MAX,
+                    wanted: what.cast_unsigned(),
+                }),
+            );
         }
     }
     (plain, guarded)
@@ -255,7 +264,6 @@ mod tests {
             libc::SYS_ptrace,
             libc::SYS_close,
             libc::SYS_openat,
-            libc::SYS_prctl,
             libc::SYS_unlinkat,
             libc::SYS_setrlimit,
         ];
@@ -288,6 +296,15 @@ mod tests {
         ] {
             assert_eq!(open(flags), DENY, "{flags:#o}");
         }
-        assert_eq!(judged(Stage::Loading, libc::SYS_clone, [0; 6]), DENY);
+        for call in [libc::SYS_clone, libc::SYS_fcntl] {
+            assert_eq!(judged(Stage::Loading, call, [0; 6]), DENY, "{call}");
+        }
+        let control = |what: i32| {
+            let what = what.cast_unsigned();
+            judged(Stage::Loading, libc::SYS_prctl, [what, 0, 0, 0, 0, 0])
+        };
+        assert_eq!(control(libc::PR_SET_NO_NEW_PRIVS), ALLOW);
+        assert_eq!(control(libc::PR_SET_SECCOMP), ALLOW);
+        assert_eq!(control(libc::PR_SET_PDEATHSIG), DENY);
     }
 }

@@ -11,7 +11,7 @@ use super::words::{Load, Reply, Request};
 use crate::convert::shared::{Library, LibraryError, NativeStage, OpenInfo};
 use crate::events::lock;
 use crate::failure::Failure;
-use crate::limits::{ISOLATED_DATA_BYTES, ISOLATED_LOG_LINES};
+use crate::limits::{ISOLATED_DATA_BYTES, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_LINES};
 use converter::{Conversion, Direction};
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::resource::{Resource, setrlimit};
@@ -47,7 +47,8 @@ pub fn run(daemon: i32) -> Result<(), Failure> {
     let mut room = room();
     let mut reply = Vec::new();
     loop {
-        let message = inner.shared.next(&mut room);
+        let is_over = || getppid().as_raw() != daemon;
+        let message = inner.shared.next(&mut room, is_over);
         let Some(request) = message.and_then(Request::read) else {
             return Err(fail(io::ErrorKind::InvalidData.into()));
         };
@@ -86,7 +87,18 @@ fn close_all() -> io::Result<()> {
 }
 
 fn limit() -> io::Result<()> {
+    // Shared memory and stacks that grow are no data, but they have addresses.
+    let pages = std::fs::read_to_string("/proc/self/statm")?;
+    let pages = pages
+        .split(' ')
+        .next()
+        .and_then(|pages| pages.parse::<libc::rlim_t>().ok());
+    let now = pages.unwrap_or(0).saturating_mul(PAGE_BYTES);
+    let addresses = now
+        .saturating_add(ISOLATED_DATA_BYTES)
+        .saturating_add(ISOLATED_LIBRARY_BYTES);
     for (what, most) in [
+        (Resource::RLIMIT_AS, addresses),
         (Resource::RLIMIT_DATA, ISOLATED_DATA_BYTES),
         (Resource::RLIMIT_FSIZE, 0),
         (Resource::RLIMIT_CORE, 0),
@@ -108,6 +120,8 @@ struct Inner {
     made: Vec<u8>,
 }
 
+/// Of memory, on all processors that this program is built for.
+const PAGE_BYTES: libc::rlim_t = 4096;
 /// An answer to what the daemon never asks.
 const UNKNOWN: &str = "there is no such converter here";
 
@@ -116,9 +130,13 @@ impl Inner {
         let reply = match request {
             Request::Load(load) => self.load(&load),
             Request::Seal => {
-                self.is_confined &= confine(Stage::Sealed);
+                // What constructors have kept open.
+                let is_closed = close_all().is_ok();
+                let is_sealed = confine(Stage::Sealed) && is_closed;
                 Reply::Sealed {
-                    is_confined: self.is_confined,
+                    // What the kernel could do before, a library has undone.
+                    is_resisted: self.is_confined && !is_sealed,
+                    is_confined: self.is_confined && is_sealed,
                 }
             }
             Request::Open {

@@ -4,7 +4,9 @@
 //! Owns where in it what is, its mapping, which is the only `unsafe` here, and the waiting for the other side. The daemon copies
 //! what it needs out before it looks at it, so that nothing changes under its hands, and the memory cannot be made shorter.
 
-use crate::limits::{ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES, ISOLATED_TUPLES};
+use crate::limits::{
+    ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES, ISOLATED_ORPHAN_LOOK, ISOLATED_TUPLES,
+};
 use nix::fcntl::{FcntlArg, SealFlag, fcntl};
 use nix::sys::memfd::{MFdFlags, memfd_create};
 use rustix::thread::futex;
@@ -41,6 +43,13 @@ pub(super) struct Shared {
 
 // SAFETY: `Shared` owns its mapping, which is not bound to a thread.
 unsafe impl Send for Shared {}
+
+fn timespec(time: Duration) -> futex::Timespec {
+    futex::Timespec {
+        tv_sec: i64::try_from(time.as_secs()).unwrap_or(i64::MAX),
+        tv_nsec: time.subsec_nanos().into(),
+    }
+}
 
 /// What has come of waiting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,10 +171,7 @@ impl Shared {
             Err(ANSWERED) => return Waited::Answered,
             Err(_) => return Waited::Rubbish,
         }
-        let patience = futex::Timespec {
-            tv_sec: i64::try_from(patience.as_secs()).unwrap_or(i64::MAX),
-            tv_nsec: patience.subsec_nanos().into(),
-        };
+        let patience = timespec(patience);
         // Whatever ends it: the turn tells.
         let _ = futex::wait(turn, futex::Flags::empty(), AWAITED, Some(&patience));
         match turn.load(acquire) {
@@ -180,8 +186,10 @@ impl Shared {
         self.take_message(into)
     }
 
-    /// Puts tuples where the process finds them.
+    /// Puts tuples where the process finds them; none of them counts as done.
     pub(super) fn put_input(&self, input: &[u8]) {
+        // The process may die before it begins, and what is left of the batch before is not of this one.
+        self.number(PROGRESS_AT).store(0, Ordering::Release);
         self.put(INPUT_AT, ISOLATED_BYTES, input);
     }
 
@@ -198,14 +206,21 @@ impl Shared {
 
     // The side of the process.
 
-    /// Waits for the next message and copies it to the beginning of `into`.
-    pub(super) fn next<'a>(&self, into: &'a mut [u8]) -> Option<&'a [u8]> {
+    /// Waits for the next message and copies it to the beginning of `into`. None: nobody wants anything any more, as `is_over`
+    /// tells, which is asked from time to time.
+    pub(super) fn next<'a>(
+        &self,
+        into: &'a mut [u8],
+        is_over: impl Fn() -> bool,
+    ) -> Option<&'a [u8]> {
         let turn = self.number(TURN_AT);
+        let time = timespec(ISOLATED_ORPHAN_LOOK);
         loop {
             match turn.load(Ordering::Acquire) {
                 ASKED | AWAITED => return self.take_message(into),
+                BEGIN | ANSWERED if is_over() => return None,
                 other @ (BEGIN | ANSWERED) => {
-                    let _ = futex::wait(turn, futex::Flags::empty(), other, None);
+                    let _ = futex::wait(turn, futex::Flags::empty(), other, Some(&time));
                 }
                 _ => return None,
             }
@@ -278,7 +293,7 @@ mod tests {
             scope.spawn(move || {
                 let mut room = [0; 64];
                 for _ in 0..100 {
-                    let mut message = process.next(&mut room).unwrap().to_vec();
+                    let mut message = process.next(&mut room, || false).unwrap().to_vec();
                     message.reverse();
                     process.reply(&message);
                 }
@@ -312,6 +327,13 @@ mod tests {
         daemon.take_output(&mut taken);
         assert_eq!((taken[0], taken[63]), (0, 9));
         assert_eq!(daemon.progress(), (ISOLATED_TUPLES, 1));
+        daemon.put_input(&[4]);
+        assert_eq!(
+            daemon.progress(),
+            (0, 0),
+            "nothing of the next batch is done"
+        );
+        assert!(process.next(&mut [0; 8], || true).is_none());
         assert!(process.batch(ISOLATED_BYTES + 1, 0).is_none());
         assert!(process.batch(0, ISOLATED_BYTES + 1).is_none());
     }

@@ -7,7 +7,7 @@
 //! all are started by one thread, which lives as long as the daemon.
 
 use super::memory::{Shared, Waited};
-use crate::limits::{ISOLATED_BATCH_WAITS, ISOLATED_LOOK, ISOLATED_MESSAGE_BYTES};
+use crate::limits::{ISOLATED_BATCH_WAITS, ISOLATED_IDLE, ISOLATED_LOOK, ISOLATED_MESSAGE_BYTES};
 use crate::process;
 use nix::sys::signal::Signal;
 use std::fmt;
@@ -27,14 +27,20 @@ pub const COMMAND: &str = "isolated";
 pub(super) enum Lost {
     /// There is no process.
     NotStarted(io::Error),
+    /// It does not load this library again, for this reason.
+    NotLoaded(String, String),
     /// A signal has ended it.
     Killed(i32),
     /// It has ended itself.
     Exited(i32),
     /// Somebody has stopped it.
     Stopped,
-    /// It computes for so long.
+    /// It computes for so long at one tuple.
     Late(Duration),
+    /// It goes on, but a batch took so long.
+    Slow(Duration),
+    /// It does not let its rights be taken.
+    Resists,
     /// It has said what no process of ours says.
     Rubbish,
 }
@@ -43,6 +49,10 @@ impl fmt::Display for Lost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotStarted(error) => write!(f, "its process cannot be started: {error}"),
+            Self::NotLoaded(library, why) => write!(
+                f,
+                "another process does not load {library}: {why}; write the configuration again"
+            ),
             Self::Killed(signal) => match Signal::try_from(*signal) {
                 Ok(signal) => write!(f, "its process was ended by {signal}"),
                 Err(_) => write!(f, "its process was ended by signal {signal}"),
@@ -54,6 +64,14 @@ impl fmt::Display for Lost {
                 "gave no answer in {} ms: its process was ended",
                 patience.as_millis()
             ),
+            Self::Slow(time) => write!(
+                f,
+                "its tuples took longer than {} ms together: its process was ended",
+                time.as_millis()
+            ),
+            Self::Resists => {
+                f.write_str("its process does not let the right to open files be taken from it")
+            }
             Self::Rubbish => f.write_str("its process answered what is no answer"),
         }
     }
@@ -65,6 +83,8 @@ pub(super) struct Running {
     child: Child,
     pub(super) shared: Shared,
     pub(super) since: Instant,
+    /// When it answered last.
+    answered: Instant,
 }
 
 impl Running {
@@ -75,6 +95,7 @@ impl Running {
             child: spawn(file)?,
             shared,
             since: Instant::now(),
+            answered: Instant::now(),
         })
     }
 
@@ -95,7 +116,29 @@ impl Running {
             Waited::NotYet => self.await_answer(patience, is_batch)?,
             Waited::Rubbish => return Err(Lost::Rubbish),
         }
+        self.answered = Instant::now();
         self.shared.answer(room).ok_or(Lost::Rubbish)
+    }
+
+    /// Whether somebody has ended it while nobody asked it anything. Not looked at if it has just answered.
+    pub(super) fn is_gone(&mut self) -> bool {
+        self.answered.elapsed() > ISOLATED_IDLE && matches!(self.child.try_wait(), Ok(Some(_)))
+    }
+
+    /// Whether the kernel holds it to two filters more than this process, as it should be once all is loaded. A kernel that does
+    /// not count them (before Linux 5.9) is believed.
+    pub(super) fn has_our_filters(&self) -> bool {
+        let filters = |process: &str| -> Option<u32> {
+            let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+            let count = status
+                .lines()
+                .find_map(|line| line.strip_prefix("Seccomp_filters:"));
+            count?.trim().parse().ok()
+        };
+        match (filters(&self.child.id().to_string()), filters("self")) {
+            (Some(there), Some(here)) => there == here + 2,
+            (None, _) | (_, None) => true,
+        }
     }
 
     /// The death of a process wakes nobody, so it is looked at from time to time.
@@ -119,8 +162,11 @@ impl Running {
                 return Err(Lost::Stopped);
             }
             let now = Some(self.shared.progress());
-            if !is_batch || now == before || waits == ISOLATED_BATCH_WAITS {
-                return Err(Lost::Late(patience * waits));
+            if !is_batch || now == before {
+                return Err(Lost::Late(patience));
+            }
+            if waits == ISOLATED_BATCH_WAITS {
+                return Err(Lost::Slow(patience * waits));
             }
             before = now;
             waits += 1;

@@ -50,8 +50,11 @@ pub(super) enum Reply<'a> {
     Done,
     /// It was refused. Of a library: by whose fault, as [`super::blame_of`] has it.
     Refused { blame: u8, why: String },
-    /// Whether the kernel holds the process to its few system calls.
-    Sealed { is_confined: bool },
+    /// Whether the kernel holds the process to its few system calls, and whether a library has kept it from that.
+    Sealed {
+        is_confined: bool,
+        is_resisted: bool,
+    },
     /// The number of the new state, and what the converter has logged.
     Opened { instance: u32, log: Vec<String> },
     /// The tuple was taken and gave nothing yet.
@@ -175,7 +178,10 @@ impl<'a> Reply<'a> {
                 out.extend([1, *blame]);
                 put_text(out, why);
             }
-            Self::Sealed { is_confined } => out.extend([2, u8::from(*is_confined)]),
+            Self::Sealed {
+                is_confined,
+                is_resisted,
+            } => out.extend([2, u8::from(*is_confined), u8::from(*is_resisted)]),
             Self::Opened { instance, log } => {
                 out.push(3);
                 put(out, *instance);
@@ -213,6 +219,7 @@ impl<'a> Reply<'a> {
             },
             2 => Self::Sealed {
                 is_confined: rest.byte()? != 0,
+                is_resisted: rest.byte()? != 0,
             },
             3 => Self::Opened {
                 instance: rest.number()?,
@@ -351,7 +358,10 @@ mod tests {
                 blame: 2,
                 why: "no such library".to_owned(),
             },
-            Reply::Sealed { is_confined: true },
+            Reply::Sealed {
+                is_confined: true,
+                is_resisted: false,
+            },
             Reply::Opened {
                 instance: 9,
                 log: vec!["a line".to_owned(), String::new()],
