@@ -154,7 +154,7 @@ impl Recipe {
                 let log: LogSink = Arc::new(|_| {});
                 let info = self.open_info(plan, direction, &changed, &log);
                 let opened = library.open(&info);
-                opened.map_err(|fault| Error::Invalid(fault.to_string()))?;
+                opened.map_err(|fault| library.refusal(&fault))?;
             }
         }
         *params = Arc::new(changed);

@@ -190,10 +190,12 @@ pub const ISOLATED_BYTES: usize = 128 << 10;
 pub const ISOLATED_TUPLES: usize = 0xffff;
 /// Bytes up to which a single tuple travels in a message.
 pub const ISOLATED_TUPLE_BYTES: usize = 4 << 10;
-/// Bytes of one message: 256 params with their names are the longest.
+/// Bytes of one message: 256 params with their names, and lines of the log, are the longest.
 pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
 /// Lines that a converter may log while it is opened.
 pub const ISOLATED_LOG_LINES: usize = 16;
+/// Bytes of these lines together.
+pub const ISOLATED_LOG_BYTES: usize = ISOLATED_MESSAGE_BYTES / 2;
 /// Bytes of memory that all its states may take together.
 pub const ISOLATED_DATA_BYTES: libc::rlim_t = 64 << 20;
 /// Bytes of addresses beside those of the program and that memory: libraries, and what no limit of data counts.

@@ -27,6 +27,8 @@ use converter::{Conversion, Direction, Fault};
 use memory::Shared;
 use process::{Lost, Running};
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -46,7 +48,8 @@ pub struct Isolated {
 type Place = (u32, u32);
 
 struct Life {
-    loads: Vec<Load>,
+    /// What was loaded, with the files open: their names in the cache may go.
+    loads: Vec<(Load, Option<File>)>,
     is_sealed: bool,
     running: Option<Running>,
     /// How many were started.
@@ -138,7 +141,8 @@ impl Isolated {
                 }
             }));
         }
-        life.loads.push(load);
+        let file = File::open(&load.file).ok();
+        life.loads.push((load, file));
         Ok(Apart {
             process: Arc::clone(self),
             library: u32::try_from(life.loads.len() - 1).unwrap_or(u32::MAX),
@@ -163,6 +167,11 @@ impl Isolated {
 }
 
 impl Apart {
+    /// Whether there is a process at the moment.
+    pub fn has_process(&self) -> bool {
+        lock(&self.process.life).running.is_some()
+    }
+
     /// Makes the converter's state for one open file and direction.
     ///
     /// # Errors
@@ -312,13 +321,15 @@ impl IsolatedStage {
 
     /// The number of its state in the present process, which is started if there is none.
     fn placed(&mut self, life: &mut Life) -> Result<u32, Fault> {
+        if !lock(&self.apart.process.left).is_empty() {
+            self.apart.process.leave(life);
+        }
         life.start().map_err(|lost| self.labelled(&lost))?;
         if let Some((generation, instance)) = self.place
             && generation == life.generation
         {
             return Ok(instance);
         }
-        self.apart.process.leave(life);
         let request = Request::Open {
             library: self.apart.library,
             direction: self.direction,
@@ -365,18 +376,24 @@ impl Drop for IsolatedStage {
 }
 
 impl Isolated {
-    /// Closes the states of files that are closed, all of them within a short time.
+    /// Closes the states of files that are closed, as many as a short time is enough for.
     fn leave(&self, life: &mut Life) {
+        let mut left = std::mem::take(&mut *lock(&self.left));
         let until = Instant::now() + ISOLATED_CLOSE_PATIENCE;
-        for (generation, instance) in std::mem::take(&mut *lock(&self.left)) {
+        while let Some((generation, instance)) = left.pop() {
             if generation != life.generation || life.running.is_none() {
                 continue;
             }
-            let patience = until.saturating_duration_since(Instant::now());
-            let closed = life.ask(&Request::Close { instance }, patience, false);
+            let closed = life.ask(&Request::Close { instance }, self.patience, false);
             if let Err(lost) = closed.map(drop) {
                 life.forget(&lost);
             }
+            if Instant::now() > until {
+                break;
+            }
+        }
+        if !left.is_empty() {
+            lock(&self.left).append(&mut left);
         }
     }
 }
@@ -418,7 +435,11 @@ impl Life {
 
     /// Loads into a new process what the one before had.
     fn fill(&mut self) -> Result<(), Lost> {
-        for load in self.loads.clone() {
+        let loads = self
+            .loads
+            .iter()
+            .map(|(load, file)| present(load, file.as_ref()));
+        for load in loads.collect::<Vec<_>>() {
             self.load(&load).map_err(|refusal| match refusal {
                 LoadRefusal::Wrong(why) => Lost::NotLoaded(load.shown.clone(), why.to_string()),
                 LoadRefusal::Lost(lost) => lost,
@@ -466,7 +487,7 @@ impl Life {
         patience: Duration,
         is_batch: bool,
     ) -> Result<Reply<'_>, Lost> {
-        let running = self.running.as_mut().ok_or(Lost::Rubbish)?;
+        let running = self.running.as_mut().ok_or(Lost::Absent)?;
         self.message.clear();
         request.write(&mut self.message);
         let answer = running.ask(&self.message, &mut self.answer, patience, is_batch)?;
@@ -493,6 +514,15 @@ impl Life {
         self.lost = Some((lost.to_string(), Instant::now() + self.pause));
         self.pause = (self.pause * 2).clamp(ISOLATED_PAUSE, ISOLATED_PAUSE_MAX);
     }
+}
+
+/// The same, by what this process has open if somebody has removed the file from the cache.
+fn present(load: &Load, file: Option<&File>) -> Load {
+    let mut load = load.clone();
+    if let Some(file) = file.filter(|_| !Path::new(&load.file).exists()) {
+        load.file = format!("/proc/{}/fd/{}", std::process::id(), file.as_raw_fd());
+    }
+    load
 }
 
 /// Why a library is not loaded there.

@@ -6,6 +6,7 @@ use super::inline_c::Compiler;
 use super::isolated::{Apart, Isolated};
 use super::shared::{self, Library, LibraryError};
 use super::{Code, Workshop};
+use crate::errno::Error;
 use config::description::{NodeDescription, StageDescription, StageKind};
 use config::problem::Problem;
 use converter::{Direction, Fault};
@@ -28,6 +29,18 @@ pub(super) enum Machine {
 }
 
 impl Machine {
+    /// Why it cannot be opened, for one who has changed a param: the number is wrong, unless there is no process to ask.
+    pub(super) fn refusal(&self, fault: &Fault) -> Error {
+        let is_asked = match self {
+            Self::Here(_) => true,
+            Self::Apart(apart) => apart.has_process(),
+        };
+        match is_asked {
+            true => Error::Invalid(fault.to_string()),
+            false => Error::of_converter(fault),
+        }
+    }
+
     pub(super) fn open(&self, info: &shared::OpenInfo<'_>) -> Result<Code, Fault> {
         match self {
             Self::Here(library) => library.open(info).map(Code::Native),

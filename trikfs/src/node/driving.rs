@@ -11,12 +11,13 @@ use crate::crew::lock_patiently;
 use crate::device::{Drives, kinds};
 use crate::errno::Error;
 use crate::events::lock;
+use crate::guardian::actions::RestAction;
 use crate::lease::Lease;
 use crate::regulation::Regulation;
 use crate::sample_bus::Ring;
 use config::description::NodeDescription;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// What a write to one node has to do with.
 pub struct Driving {
@@ -39,8 +40,10 @@ pub struct Driving {
     pub written: Written,
     /// What is written, in shared memory.
     ring: Mutex<Option<Ring>>,
-    /// The rest as the device gets it, if the converter is not in this process.
-    rest_bytes: OnceLock<Vec<u8>>,
+    /// The rest as the device gets it, if a converter on the way there is not in this process.
+    known_rest: Mutex<Option<RestAction>>,
+    /// One param after the other is changed, with what follows from it.
+    pub params_turn: Mutex<()>,
 }
 
 impl Driving {
@@ -74,19 +77,19 @@ impl Driving {
             writes: AtomicU32::new(0),
             written: Written::new(description.read_back),
             ring: Mutex::default(),
-            rest_bytes: OnceLock::new(),
+            known_rest: Mutex::default(),
+            params_turn: Mutex::default(),
         }
     }
 
-    /// The rest as the device gets it, if it must not depend on the converter.
-    pub(super) fn rest_bytes(&self) -> Option<&[u8]> {
-        self.rest_bytes.get().map(Vec::as_slice)
+    /// The rest as the device gets it, if it must not depend on a converter.
+    pub(super) fn known_rest(&self) -> Option<RestAction> {
+        lock(&self.known_rest).clone()
     }
 
     /// Keeps that.
-    pub(super) fn keep_rest_bytes(&self, bytes: &[u8]) {
-        // It is the same each time.
-        let _ = self.rest_bytes.set(bytes.to_vec());
+    pub(super) fn keep_rest(&self, action: &RestAction) {
+        *lock(&self.known_rest) = Some(action.clone());
     }
 
     /// Whether the actuator may be anything but at rest.

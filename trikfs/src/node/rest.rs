@@ -4,6 +4,7 @@
 //! is the business of others.
 
 use super::Node;
+use crate::device::kinds;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
@@ -59,14 +60,9 @@ impl Node {
         }
         let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
         loop {
-            let outcome = match self.driving.rest_bytes() {
+            let outcome = match self.driving.known_rest() {
                 // Nobody waits for a converter in another process, which may be dead or stopped.
-                Some(bytes) => self.raw_sink().and_then(|mut sink| {
-                    let _turn = self.take_turn();
-                    sink.write(bytes, true)?;
-                    self.driving.went(&tuple);
-                    Ok(())
-                }),
+                Some(action) => self.perform(&action, &tuple),
                 None => self.open_writer(None).and_then(|mut writer| {
                     let _turn = self.take_turn();
                     writer.write_whole(&tuple, true)
@@ -84,8 +80,39 @@ impl Node {
         }
     }
 
-    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
+    fn perform(&self, action: &RestAction, tuple: &[u8]) -> Result<(), Error> {
+        if self.is_retired() {
+            return Err(Error::Stale);
+        }
+        let sink = kinds::open_sink(&action.sink, &self.source.around);
+        let mut sink = sink.inspect_err(|error| self.report(error))?;
+        let _turn = self.take_turn();
+        sink.write(&action.tuple, true)?;
+        self.driving.went(tuple);
+        Ok(())
+    }
+
+    /// A param has changed, and the rest may be other bytes from here on.
+    ///
+    /// # Errors
+    /// It cannot be converted; the former bytes stay.
+    pub fn renew_rest(self: &Arc<Self>) -> Result<(), Error> {
+        match self.driving.known_rest() {
+            Some(_) => self.convert_rest().map(drop),
+            None => Ok(()),
+        }
+    }
+
+    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest. What is known is
+    /// not converted again: a process that is dead or stopped must not take it away.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
+        match self.driving.known_rest() {
+            Some(action) => Ok(Some(action)),
+            None => self.convert_rest(),
+        }
+    }
+
+    fn convert_rest(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
         if self.driving.takes_orders() {
             // What it drives has a rest of its own.
             return Ok(None);
@@ -96,10 +123,24 @@ impl Node {
         let Some(converted) = self.converted(&tuple)? else {
             return Ok(None);
         };
-        if self.description.isolate {
-            self.driving.keep_rest_bytes(&converted);
+        let action = self.action_of(converted)?;
+        if let Some(action) = action.as_ref().filter(|_| self.is_apart()) {
+            self.driving.keep_rest(action);
         }
-        self.action_of(converted)
+        Ok(action)
+    }
+
+    /// Whether what is written here passes a converter in another process.
+    fn is_apart(&self) -> bool {
+        let further = match self.description.source.innermost().resting() {
+            Resting::Node(path) => self.links.iter().find(|(name, _)| name == path),
+            Resting::Device
+            | Resting::ReadOnly
+            | Resting::Absent
+            | Resting::NoDevice
+            | Resting::Within => None,
+        };
+        self.description.isolate || further.is_some_and(|(_, other)| other.is_apart())
     }
 
     /// What the device of this node, or the node that it writes to, gets for a tuple; None: nothing.

@@ -6,7 +6,7 @@ use super::Node;
 use crate::convert::{LogSink, Pipeline};
 use crate::device::lines::answer::Answer;
 use crate::device::linked::LinkedNode;
-use crate::device::{ByDelivery, Device, Positions, Sink, State, Stream, Surroundings, kinds};
+use crate::device::{ByDelivery, Device, Positions, State, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -166,13 +166,8 @@ impl Node {
             return Ok(Writer::to_regulation(self.clone()));
         }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
-        let sink = self.raw_sink()?;
+        let sink = kinds::open_sink(&self.description.source, &self.source.around)
+            .inspect_err(|error| self.report(error))?;
         Ok(Writer::new(self.clone(), sink, pipeline))
-    }
-
-    /// What takes tuples as they come out of the converters.
-    pub(super) fn raw_sink(&self) -> Result<Box<dyn Sink>, Error> {
-        let sink = kinds::open_sink(&self.description.source, &self.source.around);
-        sink.inspect_err(|error| self.report(error))
     }
 }

@@ -1,7 +1,7 @@
 //! What runs in the process of an isolated converter: gives up its rights, loads libraries, and converts what it is told to.
 //!
-//! Owns the states of all open files of one node. It has no descriptors but three of /dev/null, and ends when the daemon ends it
-//! or dies.
+//! Owns the states of all open files of one node. It has no descriptors once its libraries are loaded, and ends when the daemon
+//! ends it or dies.
 
 use super::blame_number;
 use super::calls::{Stage, confine};
@@ -11,12 +11,14 @@ use super::words::{Load, Reply, Request};
 use crate::convert::shared::{Library, LibraryError, NativeStage, OpenInfo};
 use crate::events::lock;
 use crate::failure::Failure;
-use crate::limits::{ISOLATED_DATA_BYTES, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_LINES};
+use crate::limits::{
+    ISOLATED_DATA_BYTES, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_BYTES, ISOLATED_LOG_LINES,
+};
 use converter::{Conversion, Direction};
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::resource::{Resource, setrlimit};
 use nix::sys::signal::Signal;
-use nix::unistd::{dup2_stderr, dup2_stdin, dup2_stdout, getppid};
+use nix::unistd::{SysconfVar, dup2_stderr, dup2_stdin, dup2_stdout, getppid, sysconf};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -69,17 +71,18 @@ fn inherit() -> io::Result<Shared> {
     dup2_stdout(&nothing)?;
     dup2_stderr(&nothing)?;
     drop(nothing);
-    close_all()?;
+    close_from(3)?;
     Ok(shared)
 }
 
-/// What a thread of the daemon had open at the moment of the start and did not mark.
-fn close_all() -> io::Result<()> {
+/// Closes this descriptor and all after it: what a thread of the daemon had open at the moment of the start and did not mark,
+/// and what constructors have opened.
+fn close_from(first: RawFd) -> io::Result<()> {
     let open: Vec<RawFd> = std::fs::read_dir("/proc/self/fd")?
         .flatten()
         .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
         .collect();
-    for number in open.into_iter().filter(|number| *number > 2) {
+    for number in open.into_iter().filter(|number| *number >= first) {
         // One of them was that of the folder.
         let _ = nix::unistd::close(number);
     }
@@ -93,7 +96,11 @@ fn limit() -> io::Result<()> {
         .split(' ')
         .next()
         .and_then(|pages| pages.parse::<libc::rlim_t>().ok());
-    let now = pages.unwrap_or(0).saturating_mul(PAGE_BYTES);
+    let page = sysconf(SysconfVar::PAGE_SIZE).ok().flatten();
+    let page = page.and_then(|page| libc::rlim_t::try_from(page).ok());
+    let now = pages
+        .unwrap_or(0)
+        .saturating_mul(page.unwrap_or(PAGE_BYTES));
     let addresses = now
         .saturating_add(ISOLATED_DATA_BYTES)
         .saturating_add(ISOLATED_LIBRARY_BYTES);
@@ -120,7 +127,7 @@ struct Inner {
     made: Vec<u8>,
 }
 
-/// Of memory, on all processors that this program is built for.
+/// Of memory, where the system does not say it.
 const PAGE_BYTES: libc::rlim_t = 4096;
 /// An answer to what the daemon never asks.
 const UNKNOWN: &str = "there is no such converter here";
@@ -130,8 +137,8 @@ impl Inner {
         let reply = match request {
             Request::Load(load) => self.load(&load),
             Request::Seal => {
-                // What constructors have kept open.
-                let is_closed = close_all().is_ok();
+                // The first three as well: a constructor may have others under their numbers.
+                let is_closed = close_from(0).is_ok();
                 let is_sealed = confine(Stage::Sealed) && is_closed;
                 Reply::Sealed {
                     // What the kernel could do before, a library has undone.
@@ -197,7 +204,7 @@ impl Inner {
         let Some(library) = self.libraries.get(library as usize) else {
             return Reply::Fault(UNKNOWN.to_owned());
         };
-        let log = Arc::new(Mutex::new(Vec::new()));
+        let log = Arc::new(Mutex::new(Vec::<String>::new()));
         let heard = Arc::clone(&log);
         let info = OpenInfo {
             direction,
@@ -207,7 +214,8 @@ impl Inner {
             params,
             log: Arc::new(move |line| {
                 let mut lines = lock(&heard);
-                if lines.len() < ISOLATED_LOG_LINES {
+                let bytes: usize = lines.iter().map(String::len).sum();
+                if lines.len() < ISOLATED_LOG_LINES && bytes + line.len() < ISOLATED_LOG_BYTES {
                     lines.push(line.to_owned());
                 }
             }),

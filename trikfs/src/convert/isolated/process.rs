@@ -10,6 +10,8 @@ use super::memory::{Shared, Waited};
 use crate::limits::{ISOLATED_BATCH_WAITS, ISOLATED_IDLE, ISOLATED_LOOK, ISOLATED_MESSAGE_BYTES};
 use crate::process;
 use nix::sys::signal::Signal;
+use nix::sys::wait::waitpid;
+use nix::unistd::Pid;
 use std::fmt;
 use std::fs::File;
 use std::io;
@@ -41,6 +43,8 @@ pub(super) enum Lost {
     Slow(Duration),
     /// It does not let its rights be taken.
     Resists,
+    /// There is none: it was ended a moment before.
+    Absent,
     /// It has said what no process of ours says.
     Rubbish,
 }
@@ -72,6 +76,7 @@ impl fmt::Display for Lost {
             Self::Resists => {
                 f.write_str("its process does not let the right to open files be taken from it")
             }
+            Self::Absent => f.write_str("its process has just ended"),
             Self::Rubbish => f.write_str("its process answered what is no answer"),
         }
     }
@@ -144,7 +149,7 @@ impl Running {
     /// The death of a process wakes nobody, so it is looked at from time to time.
     fn await_answer(&mut self, patience: Duration, is_batch: bool) -> Result<(), Lost> {
         let mut until = Instant::now() + patience;
-        let mut before = None;
+        let mut before = Some((0, 0));
         let mut waits = 1;
         loop {
             if let Ok(Some(status)) = self.child.try_wait() {
@@ -178,7 +183,32 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         let _ = self.child.kill();
-        let _ = self.child.wait();
+        // Most are gone at once. One that waits for a file of our own tree is gone when that is answered, perhaps by the thread
+        // that is here: somebody else waits for it then.
+        if let Ok(None) = self.child.try_wait() {
+            reap(self.child.id());
+        }
+    }
+}
+
+/// Has the end of a process waited for by a thread that does nothing else.
+fn reap(process: u32) {
+    static REAPER: OnceLock<Option<Sender<u32>>> = OnceLock::new();
+    let reaper = REAPER.get_or_init(|| {
+        let (ended, to_wait) = channel::<u32>();
+        let thread = std::thread::Builder::new().name("isolated-end".to_owned());
+        let wait = move || {
+            for process in to_wait {
+                if let Ok(process) = i32::try_from(process) {
+                    let _ = waitpid(Pid::from_raw(process), None);
+                }
+            }
+        };
+        thread.spawn(wait).ok().map(|_| ended)
+    });
+    // Without a thread its number stays taken, and nothing worse.
+    if let Some(reaper) = reaper {
+        let _ = reaper.send(process);
     }
 }
 
