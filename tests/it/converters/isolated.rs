@@ -8,7 +8,7 @@ use harness::{Board, Mount, processes};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::os::unix::fs::FileExt;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Does what the first byte of a tuple says.
@@ -124,11 +124,11 @@ fn whatever_machine_code_does_costs_its_own_node_an_error_and_no_other_node_its_
     let good = m.open("good/device");
     m.read("bad/device").unwrap();
     let confined = is_confined(&m);
-    let is_over = AtomicBool::new(false);
+    let (over, is_over) = channel::<()>();
     std::thread::scope(|scope| {
-        let watched = scope.spawn(|| {
+        let watched = scope.spawn(move || {
             let mut worst = Duration::ZERO;
-            while !is_over.load(Ordering::Relaxed) {
+            while is_over.recv_timeout(Duration::from_millis(1)) == Err(RecvTimeoutError::Timeout) {
                 let start = Instant::now();
                 let mut got = [0; 1];
                 good.read_exact_at(&mut got, 0).unwrap();
@@ -153,7 +153,7 @@ fn whatever_machine_code_does_costs_its_own_node_an_error_and_no_other_node_its_
             // What is remembered in static variables begins anew with the process.
             assert_eq!(after[1] == 1, *is_gone, "after {deed}: {after:?}");
         }
-        is_over.store(true, Ordering::Relaxed);
+        drop(over);
         let worst = watched.join().unwrap();
         assert!(worst < Duration::from_secs(1), "a good node took {worst:?}");
     });

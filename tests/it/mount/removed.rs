@@ -10,8 +10,10 @@ use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 const ROBOT: &str = "trikfs = {
   motor = { src = '$DIR/motor', input_tuple_size = 2, format = 'i8 speed, u8 mode', rest = { 0, 7 } },
@@ -30,21 +32,25 @@ fn robot() -> Option<Mount> {
     Some(m)
 }
 
+/// Between two things that one of a crowd does: others have the machine too.
+const PACE: Duration = Duration::from_millis(2);
+
 /// Sixteen that open, read or write and close, whatever comes of it, until they are told to end. Each has been served once.
 struct Crowd {
-    is_over: Arc<AtomicBool>,
+    /// Dropping them ends it.
+    over: Vec<Sender<()>>,
     all: Vec<JoinHandle<()>>,
 }
 
 impl Crowd {
     fn new(root: &Path) -> Self {
-        let is_over = Arc::<AtomicBool>::default();
         let served = Arc::<AtomicU32>::default();
         let one = |number: u32| {
-            let (root, is_over, served) = (root.to_owned(), is_over.clone(), served.clone());
-            std::thread::spawn(move || {
+            let (root, served) = (root.to_owned(), served.clone());
+            let (over, is_over) = channel();
+            let work = move || {
                 let mut is_served = false;
-                while !is_over.load(Ordering::Relaxed) {
+                while is_over.recv_timeout(PACE) == Err(RecvTimeoutError::Timeout) {
                     let done = if number.is_multiple_of(2) {
                         File::open(root.join("lua/value"))
                             .and_then(|mut file| file.read(&mut [0; 64]))
@@ -56,20 +62,20 @@ impl Crowd {
                         is_served = true;
                         served.fetch_add(1, Ordering::Relaxed);
                     }
-                    std::thread::yield_now();
                 }
-            })
+            };
+            (over, std::thread::spawn(work))
         };
-        let all: Vec<_> = (0..16).map(one).collect();
+        let (over, all): (Vec<_>, Vec<_>) = (0..16).map(one).unzip();
         eventually("each is served", || {
             served.load(Ordering::Relaxed) as usize == all.len()
         });
-        Self { is_over, all }
+        Self { over, all }
     }
 
     /// None of them hangs.
     fn end(self) {
-        self.is_over.store(true, Ordering::Relaxed);
+        drop(self.over);
         for one in self.all {
             one.join().expect("no panic");
         }
