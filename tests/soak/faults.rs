@@ -172,6 +172,10 @@ fn attempt(robot: &Robot, figures: &Figures, fault: Fault) -> Option<Option<Dura
         let _ = child.kill();
         let _ = child.wait();
     }
+    if fault == Fault::FailCalls {
+        // It has let go just now, and what stood still until now may be late for a moment more.
+        figures.slow(TRACER_PATIENCE);
+    }
     recover(robot, figures);
     if rested.is_none() && figures.is_over() {
         return None;
@@ -225,7 +229,7 @@ fn act(robot: &Robot, figures: &Figures, fault: Fault, writer: Option<&Child>) -
 
 /// From here on, while the process given lives, every third call of the daemon on /dev/fuse fails.
 fn make_calls_fail(robot: &Robot, figures: &Figures) -> Option<Child> {
-    figures.slow(TRACED + TRACER_PATIENCE);
+    figures.slow(TRACED + 3 * TRACER_PATIENCE);
     let tracer = Command::new("strace")
         .args(["-f", "-q", "-P", "/dev/fuse", "-o", "/dev/null"])
         .args(["-e", "trace=read,write,writev"])
