@@ -250,7 +250,7 @@ test_respawn() {
 
     # Something that ends at once, again and again.
     check "stop" "$control" stop
-    printf '#!/bin/sh\necho x >>%s/starts\nexit 3\n' "$ROOT" >"$ROOT/usr/bin/failing"
+    printf '#!/bin/sh\necho x >>%s/starts\nexit 4\n' "$ROOT" >"$ROOT/usr/bin/failing"
     chmod +x "$ROOT/usr/bin/failing"
     mv "$ROOT/usr/bin/trikfs" "$ROOT/usr/bin/good"
     mv "$ROOT/usr/bin/failing" "$ROOT/usr/bin/trikfs"
