@@ -36,7 +36,8 @@
  * TIME
  *
  *   Calls happen on the way of somebody's read or write. Never wait in convert: no sleep, no lock held for long, no
- *   device. A converter that hangs or crashes takes the filesystem with it: native code is trusted code.
+ *   device. A converter that hangs or crashes takes the filesystem with it, unless its node says isolate = true: native
+ *   code is trusted code.
  *   No C++ exception and no longjmp may leave a function of the converter.
  *
  * TEXTS are UTF-8, end with a zero byte, lower case, without a full stop. At most 1024 bytes are used, the rest is cut.

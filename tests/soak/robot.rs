@@ -44,8 +44,8 @@ pub fn config(extra: &str) -> String {
 
 /// What `apart` gives when its converter does not crash.
 pub const APART: [u8; 1] = [8];
-/// Crashes again and again, in its own process.
-const CRASH: &str = "int converter(int in_s, char *in, int out_s, char *out) { static int n; if (++n % 40 == 0) __builtin_trap(); out[0] = in[0] + 3; return 0; }";
+/// Crashes again and again, in its own process, and not so often that most reads are in the pauses after that.
+const CRASH: &str = "int converter(int in_s, char *in, int out_s, char *out) { static int n; if (++n % 1000 == 0) __builtin_trap(); out[0] = in[0] + 3; return 0; }";
 const PLUS_TWO: &str = "int converter(int in_s, char *in, int out_s, char *out) { out[0] = in[0] + 2; return in_s != out_s; }";
 
 /// A mounted tree and its daemon of clients.

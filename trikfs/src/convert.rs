@@ -125,6 +125,11 @@ impl Recipe {
         Ok(pipeline)
     }
 
+    /// How often a param was changed. Wraps.
+    pub fn generation(&self) -> u32 {
+        self.generation.load(Ordering::Acquire)
+    }
+
     /// The present value of a param.
     pub fn param(&self, name: &str) -> Option<f64> {
         lock(&self.params).get(name).copied()

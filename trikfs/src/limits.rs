@@ -66,6 +66,8 @@ pub const CONSUMED_TUPLES_MAX: usize = 4_096;
 pub const PUMP_ROUNDS: usize = 64;
 /// Bytes of shared memory that the sample bus of one mount takes.
 pub const SAMPLE_BUS_BYTES_MAX: usize = 64 << 20;
+/// ... and no more than this part of the memory that there is.
+pub const SAMPLE_BUS_PART: u64 = 8;
 /// Bytes of the log that are kept.
 pub const LOG_BYTES: usize = 64 << 10;
 /// Bytes of one recording.

@@ -349,7 +349,7 @@ impl NodeFields<'_, '_> {
     /// There is machine code that a process of its own can hold.
     fn check_isolate(&self, node: &NodeDescription) -> Result<(), Problem> {
         if node.isolate && !node.uses_machine_code() {
-            let reason = "isolate is for shared libraries and inline C: a converter in Lua cannot harm others anyway";
+            let reason = "isolate is for shared libraries and inline C, and this node has neither; a converter in Lua needs no process of its own";
             return Err(self.problem("isolate", reason));
         }
         Ok(())

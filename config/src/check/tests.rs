@@ -173,7 +173,7 @@ fn only_machine_code_is_isolated() {
         field("isolate = 1, converter = { code = 'x' }"),
         "robot.lua:3: x: isolate must be true or false, not a number"
     );
-    let reason = "isolate is for shared libraries and inline C: a converter in Lua cannot harm others anyway";
+    let reason = "isolate is for shared libraries and inline C, and this node has neither; a converter in Lua needs no process of its own";
     for converter in ["", "converter = id_create(1)"] {
         let found = field(&format!("isolate = true, {converter}"));
         assert_eq!(found, format!("robot.lua:3: x: {reason}"));

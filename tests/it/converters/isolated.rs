@@ -2,6 +2,7 @@
 
 mod rest;
 
+use super::shared::COUNTING;
 use crate::{is_of_the_controller, mount_on, trikfs};
 use harness::wait::eventually;
 use harness::{Board, Mount, processes};
@@ -78,6 +79,15 @@ fn hostile() -> Option<Mount> {
     board.file("raw", "A");
     board.file("quiet", "A");
     mount_on(board, CONFIG)
+}
+
+/// The same converter behind a pipe, which gives it batches.
+fn hostile_stream() -> Option<Mount> {
+    let board = Board::new();
+    board.library("hostile.so", HOSTILE);
+    board.fifo("in");
+    let config = "trikfs = { bad = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 2, share = false, isolate = true, converter = 'hostile.so' } }";
+    mount_on(board, config)
 }
 
 /// What the next tuple is; the file is never empty.
@@ -205,13 +215,7 @@ fn its_process_has_no_descriptors_few_rights_and_ends_with_the_daemon_even_if_it
 
 #[test]
 fn of_a_batch_in_which_it_dies_everything_before_is_delivered_and_it_goes_on_behind() {
-    let board = Board::new();
-    board.library("hostile.so", HOSTILE);
-    board.fifo("in");
-    let config = "trikfs = { bad = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 2, share = false, isolate = true, converter = 'hostile.so' } }";
-    let Some(m) = mount_on(board, config) else {
-        return;
-    };
+    let Some(m) = hostile_stream() else { return };
     m.python(
         "fd, pipe = open_ro(M + '/bad/device'), feed('in')
 os.write(pipe, b'ABCsDE')
@@ -225,43 +229,6 @@ assert got[0::2] == b'FG' * 20000
 assert got[1::2] == bytes((3 + i) % 256 for i in range(40000))",
     );
 }
-
-const COUNTING: &str = r#"
-#include "trikfs_converter.h"
-#include <stdlib.h>
-static int open_it(const trikfs_open_info *info, void **state)
-{
-    double start = 0;
-    for (uint32_t i = 0; i < info->param_count; i++)
-        start = info->params[i].value;
-    if (start < 0)
-        return 9;
-    info->log(info->host, info->node);
-    unsigned char *count = malloc(1);
-    if (!count)
-        return 1;
-    *count = (unsigned char)start;
-    *state = count;
-    return 0;
-}
-static int convert_it(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
-{
-    (void)in_size;
-    (void)out_size;
-    if (in[0] == '!')
-        return 5;
-    if (in[0] == '-')
-        return TRIKFS_CONSUMED;
-    out[0] = ++*(unsigned char *)state;
-    return TRIKFS_OK;
-}
-static const char *explain_it(void *state, int code) { (void)state; return code == 9 ? "start is at least 0" : "ENODEV: an exclamation mark"; }
-static const trikfs_converter counting = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "counting", "Counts.", 1, 1, open_it, convert_it, free, explain_it };
-static const trikfs_converter other = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "other", 0, 0, 0, 0, convert_it, 0, 0 };
-static const trikfs_converter *const all[] = { &counting, &other };
-static const trikfs_library library = { TRIKFS_ABI_VERSION, sizeof(trikfs_library), 2, all };
-TRIKFS_EXPORT const trikfs_library *trikfs_library_entry(void) { return &library; }
-"#;
 
 #[test]
 fn states_params_faults_and_log_are_those_of_a_converter_in_the_daemon() {
@@ -295,7 +262,7 @@ os.write(pipe, b'a')
 told(os.read(fd, 1))",
         );
         let log = m.log();
-        assert!(log.contains("n: n"), "{log}");
+        assert!(log.contains("n: opened"), "{log}");
         seen.push(told);
     }
     assert_eq!(seen[0], seen[1]);
@@ -375,13 +342,7 @@ fn signal(process: u32, signal: Signal) {
 
 #[test]
 fn what_an_earlier_batch_has_left_is_never_given_again() {
-    let board = Board::new();
-    board.library("hostile.so", HOSTILE);
-    board.fifo("in");
-    let config = "trikfs = { bad = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 2, share = false, isolate = true, converter = 'hostile.so' } }";
-    let Some(m) = mount_on(board, config) else {
-        return;
-    };
+    let Some(m) = hostile_stream() else { return };
     // The process is stopped, so it dies of its time before it looks at the second batch.
     m.python(&format!(
         "
@@ -405,7 +366,8 @@ assert got == b'B\x01B\x02B\x03', got
 old = children({0})[0]
 os.kill(old, 9)
 eventually(lambda: open('/proc/%d/stat' % old).read().rsplit(')', 1)[1].split()[0] == 'Z', 'its end')
-threading.Event().wait(0.1)
+# So long that it is asked first whether the process lives.
+time.sleep(0.1)
 os.write(pipe, b'CC')
 got = os.read(fd, 1024)
 assert got == b'C\x01C\x02', (got, 'ended while nobody asked it: costs nobody a tuple')

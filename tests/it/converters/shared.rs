@@ -6,7 +6,8 @@ use harness::Board;
 const PLUS: &str = "int converter(int in_s, char *in, int out_s, char *out)
 { for (int i = 0; i < out_s; i++) out[i] = in[i] + PLUS; return in[0] == '!' ? 7 : 0; }";
 
-const COUNTING: &str = r#"
+/// Counts from the param `start`; `!` is a fault, `-` gives nothing yet.
+pub(super) const COUNTING: &str = r#"
 #include "trikfs_converter.h"
 #include <stdlib.h>
 static int open_it(const trikfs_open_info *info, void **state)

@@ -128,3 +128,20 @@ end()
     ));
     assert_eq!(m.daemon(), daemon, "{}", m.complaints());
 }
+
+#[test]
+fn rings_in_shared_memory_take_a_part_of_what_the_group_allows() {
+    let Some(group) = Group::new(128) else { return };
+    // A ring of such tuples takes some MiB, and all of them more than an eighth of 128.
+    let node = "{ src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 65536, poll_ms = 1000, converter = function() end }";
+    let nodes: String = (0..40).map(|n| format!("n{n} = {node}, ")).collect();
+    let Some(m) = group.mount(Board::new(), &format!("trikfs = {{ {nodes} }}")) else {
+        return;
+    };
+    let log = m.log();
+    assert!(
+        log.contains("the rings of this mount would take more than 16 MiB"),
+        "{log}"
+    );
+    assert_eq!(m.read("n39/bin_data").unwrap().len(), 65536);
+}

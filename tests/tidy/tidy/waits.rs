@@ -3,12 +3,17 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 21] = [
+const PAUSES: [(&str, usize, &str); 22] = [
     ("bridge/src/http.rs", 1, "between two looks"),
     ("page/src/server/tests.rs", 1, "between two looks"),
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
     ("tests/harness/mount.rs", 1, "between two looks"),
     ("tests/harness/wait.rs", 1, "between two looks"),
+    (
+        "tests/it/converters/isolated.rs",
+        1,
+        "a process that nobody asks for a while",
+    ),
     ("tests/it/devices/program.rs", 1, "between two looks"),
     ("tests/it/mount/sample_bus.rs", 1, "between two looks"),
     ("trik/src/remote/output.rs", 1, "between two looks"),

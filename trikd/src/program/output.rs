@@ -93,14 +93,14 @@ pub struct Message {
     /// How it is said.
     pub manner: Manner,
     /// What clients get.
-    pub message: String,
+    pub text: String,
 }
 
 impl Message {
     /// This text, with the word in front that clients know it by.
     pub fn new(manner: Manner, text: &str) -> Self {
-        let message = format!("{}: {text}", manner.word());
-        Self { manner, message }
+        let text = format!("{}: {text}", manner.word());
+        Self { manner, text }
     }
 }
 
@@ -133,7 +133,7 @@ impl Default for Meter {
 impl Meter {
     /// Takes a message: gives it back if it may pass now, else holds it until [`Meter::release`].
     pub fn offer(&mut self, said: Message, now: Instant) -> Option<Message> {
-        let size = said.message.len();
+        let size = said.text.len();
         if self.held.is_empty() && self.admits(size, now) {
             return Some(said);
         }
@@ -145,7 +145,7 @@ impl Meter {
             let Some(oldest) = self.held.pop_front() else {
                 break;
             };
-            self.held_bytes -= oldest.message.len();
+            self.held_bytes -= oldest.text.len();
             self.dropped = self.dropped.saturating_add(1);
             self.dropped_since.get_or_insert(now);
         }
@@ -155,7 +155,7 @@ impl Meter {
     /// The next message that was held, if it may pass now or nothing more comes. What was lost before it is told first:
     /// until [`Meter::take_dropped`] has said how much that was, it waits.
     pub fn release(&mut self, now: Instant, is_over: bool) -> Option<Message> {
-        let size = self.held.front()?.message.len();
+        let size = self.held.front()?.text.len();
         if !is_over && (self.dropped_since.is_some() || !self.admits(size, now)) {
             return None;
         }
@@ -227,19 +227,19 @@ mod tests {
     /// All that comes out now.
     fn released(meter: &mut Meter, now: Instant, is_over: bool) -> Vec<String> {
         let all = std::iter::from_fn(|| meter.release(now, is_over));
-        all.map(|said| said.message).collect()
+        all.map(|said| said.text).collect()
     }
 
     /// What comes of a printed text.
     fn offered(meter: &mut Meter, text: &str, now: Instant) -> Option<String> {
         let passed = meter.offer(Message::new(Manner::Print, text), now);
-        passed.map(|said| said.message)
+        passed.map(|said| said.text)
     }
 
     #[test]
     fn only_an_error_is_one_whatever_its_text_is() {
         let said = Message::new(Manner::Print, "error: 5");
-        assert_eq!(said.message, "print: error: 5");
+        assert_eq!(said.text, "print: error: 5");
         assert_eq!(said.manner.level(), Level::Info);
         assert_eq!(Manner::Error.level(), Level::Error);
     }

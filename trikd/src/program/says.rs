@@ -35,10 +35,10 @@ impl Supervisor {
 
     /// Something that the program with this name said.
     pub(super) fn tell(&self, said: &Message, name: &str) {
-        self.broadcast(&said.message);
+        self.broadcast(&said.text);
         let record = &self.around.record;
         if record.is_heard() {
-            record.level(Story::Output, said.manner.level(), name, &said.message);
+            record.level(Story::Output, said.manner.level(), name, &said.text);
         }
     }
 

@@ -32,7 +32,7 @@ use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-use words::{Load, Reply, Request};
+use words::{Answer, Closed, Load, Loaded, Many, One, Opened, Request, Sealed};
 
 /// The process of one node's native converters, through the deaths of it.
 pub struct Isolated {
@@ -55,7 +55,7 @@ struct Life {
     /// How many were started.
     generation: u32,
     /// Why the last one is gone; then nothing is started until so long after that.
-    lost: Option<(String, Instant)>,
+    lost: Option<(Blame, String, Instant)>,
     pause: Duration,
     message: Vec<u8>,
     answer: Vec<u8>,
@@ -130,14 +130,14 @@ impl Isolated {
             name: name.map(str::to_owned),
         };
         let mut life = lock(&self.life);
-        let lost = |lost: Refused| wrong(Wrong::Lost(lost.to_string()));
-        life.start().map_err(lost)?;
+        let refused = |refused: Refused| wrong(Wrong::Told(refused.blame, refused.to_string()));
+        life.start().map_err(refused)?;
         if let Err(refusal) = life.load(&load) {
             return Err(wrong(match refusal {
                 LoadRefusal::Wrong(why) => why,
                 LoadRefusal::Lost(lost) => {
                     life.forget(&lost);
-                    Wrong::Lost(lost.to_string())
+                    Wrong::Told(lost.blame(), lost.to_string())
                 }
             }));
         }
@@ -161,7 +161,7 @@ impl Isolated {
         life.is_sealed = true;
         life.seal().map_err(|lost| LibraryError::Library {
             shown: "the isolated converter".to_owned(),
-            why: Wrong::Lost(lost.to_string()),
+            why: Wrong::Told(lost.blame(), lost.to_string()),
         })
     }
 }
@@ -224,17 +224,17 @@ impl IsolatedStage {
             instance,
             tuple: input,
         };
-        let reply = match life.ask(&request, process.patience, false) {
-            Ok(Reply::Consumed) => return Ok(Conversion::Consumed),
-            Ok(Reply::Produced(made)) if made.len() == output.len() => {
+        let lost = match life.ask(&request, process.patience, false) {
+            Ok(One::Consumed) => return Ok(Conversion::Consumed),
+            Ok(One::Produced(made)) if made.len() == output.len() => {
                 output.copy_from_slice(made);
                 return Ok(Conversion::Produced);
             }
-            Ok(Reply::Fault(why)) => return Err(Fault::new(why)),
-            Ok(_) => Lost::Rubbish,
+            Ok(One::Produced(_)) => Lost::Rubbish,
+            Ok(One::Fault(why)) => return Err(Fault::new(why)),
             Err(lost) => lost,
         };
-        Err(self.lost(&mut life, &reply))
+        Err(self.lost(&mut life, &lost))
     }
 
     /// As `NativeStage::convert_many`. Of a batch in which the process dies, what was converted before counts.
@@ -296,17 +296,15 @@ impl IsolatedStage {
         let counts = |taken: usize, made: usize| {
             (taken <= tuples && made <= room && made <= taken).then_some((taken, made))
         };
-        let matter = match life.ask(&request, process.patience, true) {
-            Ok(Reply::Many { taken, made, fault }) => match counts(taken as usize, made as usize) {
+        let lost = match life.ask(&request, process.patience, true) {
+            Ok(Many { taken, made, fault }) => match counts(taken as usize, made as usize) {
                 // A batch without a fault ends where the tuples or the room do.
                 Some((taken, made)) if fault.is_some() || taken == tuples || made == room => {
                     life.take_output(&mut output[..made * self.output_size]);
                     return (taken, made, fault.map(Fault::new));
                 }
-                _ => Lost::Rubbish,
+                Some(_) | None => Lost::Rubbish,
             },
-            Ok(Reply::Fault(why)) => return (1, 0, Some(Fault::new(why))),
-            Ok(_) => Lost::Rubbish,
             Err(lost) => lost,
         };
         // What was whole before stays; the tuple after those that were taken is the one that it died of.
@@ -315,7 +313,7 @@ impl IsolatedStage {
             .and_then(|(taken, made)| counts(taken, made))
             .unwrap_or((0, 0));
         life.take_output(&mut output[..made * self.output_size]);
-        let fault = self.lost(&mut life, &matter);
+        let fault = self.lost(&mut life, &lost);
         ((taken + 1).min(tuples), made, Some(fault))
     }
 
@@ -339,15 +337,14 @@ impl IsolatedStage {
             params: self.params.clone(),
         };
         let lost = match life.ask(&request, self.apart.process.patience, false) {
-            Ok(Reply::Opened { instance, log }) => {
+            Ok(Opened::Done { instance, log }) => {
                 self.place = Some((life.generation, instance));
                 for line in log.iter().take(ISOLATED_LOG_LINES) {
                     (self.log)(line);
                 }
                 return Ok(instance);
             }
-            Ok(Reply::Fault(why)) => return Err(Fault::new(why)),
-            Ok(_) => Lost::Rubbish,
+            Ok(Opened::Fault(why)) => return Err(Fault::new(why)),
             Err(lost) => lost,
         };
         Err(self.lost(life, &lost))
@@ -384,9 +381,9 @@ impl Isolated {
             if generation != life.generation || life.running.is_none() {
                 continue;
             }
-            let closed = life.ask(&Request::Close { instance }, self.patience, false);
-            if let Err(lost) = closed.map(drop) {
-                life.forget(&lost);
+            match life.ask(&Request::Close { instance }, self.patience, false) {
+                Ok(Closed) => {}
+                Err(lost) => life.forget(&lost),
             }
             if Instant::now() > until {
                 break;
@@ -410,10 +407,11 @@ impl Life {
             return Ok(());
         }
         let now = Instant::now();
-        if let Some((why, not_before)) = &self.lost
+        if let Some((blame, why, not_before)) = &self.lost
             && now < *not_before
         {
             return Err(Refused {
+                blame: *blame,
                 why: why.clone(),
                 is_pause: true,
             });
@@ -427,6 +425,7 @@ impl Life {
         ready.map_err(|lost| {
             self.forget(&lost);
             Refused {
+                blame: lost.blame(),
                 why: lost.to_string(),
                 is_pause: false,
             }
@@ -454,24 +453,19 @@ impl Life {
     fn load(&mut self, load: &Load) -> Result<(), LoadRefusal> {
         let request = Request::Load(load.clone());
         match self.ask(&request, ISOLATED_LOAD_PATIENCE, false) {
-            Ok(Reply::Done) => Ok(()),
-            Ok(Reply::Refused { blame, why }) => {
+            Ok(Loaded::Done) => Ok(()),
+            Ok(Loaded::Refused { blame, why }) => {
                 Err(LoadRefusal::Wrong(Wrong::Told(blame_of(blame), why)))
             }
-            Ok(_) => Err(LoadRefusal::Lost(Lost::Rubbish)),
             Err(lost) => Err(LoadRefusal::Lost(lost)),
         }
     }
 
     fn seal(&mut self) -> Result<bool, Lost> {
-        let (is_confined, is_resisted) =
-            match self.ask(&Request::Seal, ISOLATED_LOAD_PATIENCE, false)? {
-                Reply::Sealed {
-                    is_confined,
-                    is_resisted,
-                } => (is_confined, is_resisted),
-                _ => return Err(Lost::Rubbish),
-            };
+        let Sealed {
+            is_confined,
+            is_resisted,
+        } = self.ask(&Request::Seal, ISOLATED_LOAD_PATIENCE, false)?;
         let running = self.running.as_ref();
         let is_ours = running.is_some_and(Running::has_our_filters);
         if is_resisted || (is_confined && !is_ours) {
@@ -481,17 +475,17 @@ impl Life {
     }
 
     /// A question and its answer.
-    fn ask(
-        &mut self,
+    fn ask<'a, A: Answer<'a>>(
+        &'a mut self,
         request: &Request<'_>,
         patience: Duration,
         is_batch: bool,
-    ) -> Result<Reply<'_>, Lost> {
+    ) -> Result<A, Lost> {
         let running = self.running.as_mut().ok_or(Lost::Absent)?;
         self.message.clear();
         request.write(&mut self.message);
         let answer = running.ask(&self.message, &mut self.answer, patience, is_batch)?;
-        Reply::read(answer).ok_or(Lost::Rubbish)
+        A::read(answer).ok_or(Lost::Rubbish)
     }
 
     fn take_output(&self, output: &mut [u8]) {
@@ -511,7 +505,7 @@ impl Life {
         if lived > ISOLATED_CALM {
             self.pause = Duration::ZERO;
         }
-        self.lost = Some((lost.to_string(), Instant::now() + self.pause));
+        self.lost = Some((lost.blame(), lost.to_string(), Instant::now() + self.pause));
         self.pause = (self.pause * 2).clamp(ISOLATED_PAUSE, ISOLATED_PAUSE_MAX);
     }
 }
@@ -533,6 +527,7 @@ enum LoadRefusal {
 
 /// Why there is no process.
 struct Refused {
+    blame: Blame,
     why: String,
     /// Another one is tried after a pause.
     is_pause: bool,

@@ -40,8 +40,8 @@ pub struct Driving {
     pub written: Written,
     /// What is written, in shared memory.
     ring: Mutex<Option<Ring>>,
-    /// The rest as the device gets it, if a converter on the way there is not in this process.
-    known_rest: Mutex<Option<RestAction>>,
+    /// The rest as the device gets it, if a converter on the way there is not in this process, and of which params it is.
+    known_rest: Mutex<Option<(RestAction, u32)>>,
     /// One param after the other is changed, with what follows from it.
     pub params_turn: Mutex<()>,
 }
@@ -82,14 +82,15 @@ impl Driving {
         }
     }
 
-    /// The rest as the device gets it, if it must not depend on a converter.
-    pub(super) fn known_rest(&self) -> Option<RestAction> {
-        lock(&self.known_rest).clone()
+    /// The rest as the device gets it, if it must not depend on a converter; `params` says of which params it has to be.
+    pub(super) fn known_rest(&self, params: u32) -> Option<RestAction> {
+        let known = lock(&self.known_rest).clone();
+        known.and_then(|(action, of)| (of == params).then_some(action))
     }
 
     /// Keeps that.
-    pub(super) fn keep_rest(&self, action: &RestAction) {
-        *lock(&self.known_rest) = Some(action.clone());
+    pub(super) fn keep_rest(&self, action: &RestAction, params: u32) {
+        *lock(&self.known_rest) = Some((action.clone(), params));
     }
 
     /// Whether the actuator may be anything but at rest.

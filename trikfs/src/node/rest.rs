@@ -60,7 +60,7 @@ impl Node {
         }
         let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
         loop {
-            let outcome = match self.driving.known_rest() {
+            let outcome = match self.known_rest() {
                 // Nobody waits for a converter in another process, which may be dead or stopped.
                 Some(action) => self.perform(&action, &tuple),
                 None => self.open_writer(None).and_then(|mut writer| {
@@ -92,21 +92,48 @@ impl Node {
         Ok(())
     }
 
+    /// The rest as the device gets it, of the params of now.
+    fn known_rest(&self) -> Option<RestAction> {
+        self.driving.known_rest(self.params_on_the_way())
+    }
+
+    /// Another number after each change of a param of this node or one that a write passes on its way to the device.
+    fn params_on_the_way(&self) -> u32 {
+        let own = self.recipe.generation();
+        let further = self.written_node().map(|other| other.params_on_the_way());
+        own.wrapping_add(further.unwrap_or(0))
+    }
+
+    /// The node that takes what comes out of the converters of this one.
+    fn written_node(&self) -> Option<&Arc<Self>> {
+        match self.description.source.innermost().resting() {
+            Resting::Node(path) => {
+                let other = self.links.iter().find(|(name, _)| name == path);
+                other.map(|(_, other)| other)
+            }
+            Resting::Device
+            | Resting::ReadOnly
+            | Resting::Absent
+            | Resting::NoDevice
+            | Resting::Within => None,
+        }
+    }
+
     /// A param has changed, and the rest may be other bytes from here on.
     ///
     /// # Errors
-    /// It cannot be converted; the former bytes stay.
+    /// It cannot be converted.
     pub fn renew_rest(self: &Arc<Self>) -> Result<(), Error> {
-        match self.driving.known_rest() {
-            Some(_) => self.convert_rest().map(drop),
-            None => Ok(()),
+        match self.description.rest.is_some() && self.is_apart() {
+            true => self.convert_rest().map(drop),
+            false => Ok(()),
         }
     }
 
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest. What is known is
     /// not converted again: a process that is dead or stopped must not take it away.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        match self.driving.known_rest() {
+        match self.known_rest() {
             Some(action) => Ok(Some(action)),
             None => self.convert_rest(),
         }
@@ -120,27 +147,21 @@ impl Node {
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(None);
         };
+        // Before: a change meanwhile makes it one of former params.
+        let params = self.params_on_the_way();
         let Some(converted) = self.converted(&tuple)? else {
             return Ok(None);
         };
         let action = self.action_of(converted)?;
         if let Some(action) = action.as_ref().filter(|_| self.is_apart()) {
-            self.driving.keep_rest(action);
+            self.driving.keep_rest(action, params);
         }
         Ok(action)
     }
 
     /// Whether what is written here passes a converter in another process.
     fn is_apart(&self) -> bool {
-        let further = match self.description.source.innermost().resting() {
-            Resting::Node(path) => self.links.iter().find(|(name, _)| name == path),
-            Resting::Device
-            | Resting::ReadOnly
-            | Resting::Absent
-            | Resting::NoDevice
-            | Resting::Within => None,
-        };
-        self.description.isolate || further.is_some_and(|(_, other)| other.is_apart())
+        self.description.isolate || self.written_node().is_some_and(|other| other.is_apart())
     }
 
     /// What the device of this node, or the node that it writes to, gets for a tuple; None: nothing.
@@ -163,9 +184,8 @@ impl Node {
     fn action_of(&self, converted: Vec<u8>) -> Result<Option<RestAction>, Error> {
         let sink = self.description.source.innermost();
         match sink.resting() {
-            Resting::Node(path) => {
-                let other = self.links.iter().find(|(name, _)| name == path);
-                let Some((_, other)) = other else {
+            Resting::Node(_) => {
+                let Some(other) = self.written_node() else {
                     return Ok(None);
                 };
                 let further = other.converted(&converted)?;

@@ -7,7 +7,7 @@ use super::{BusError, Readers};
 use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::events::lock;
-use crate::limits;
+use crate::{limits, memory};
 use config::description::{Alias, NodeDescription};
 use sample_bus::place::{self, Directory, SHARED_MEMORY};
 use sample_bus::{Rights, Writer};
@@ -29,6 +29,8 @@ pub struct SampleBus {
 struct Place {
     directory: Directory,
     readers: Readers,
+    /// Bytes that all rings may take together.
+    most_bytes: usize,
 }
 
 /// One node's part of it.
@@ -48,7 +50,15 @@ impl SampleBus {
         place::sweep(shared_memory);
         let path = place::directory(shared_memory, mountpoint);
         let directory = self.note(path.and_then(|path| take(&path, readers)))?;
-        *lock(&self.place) = Some(Place { directory, readers });
+        // Shared memory counts in the control group, and on a small board it is the memory of programs.
+        let part = usize::try_from(memory::bytes() / limits::SAMPLE_BUS_PART);
+        *lock(&self.place) = Some(Place {
+            directory,
+            readers,
+            most_bytes: part.map_or(limits::SAMPLE_BUS_BYTES_MAX, |part| {
+                part.min(limits::SAMPLE_BUS_BYTES_MAX)
+            }),
+        });
         Ok(())
     }
 
@@ -170,10 +180,10 @@ impl SampleBus {
         let file = place.directory.path().join(name);
         let bytes = Writer::bytes_for(tuple_bytes)?;
         let before = self.used_bytes.fetch_add(bytes, Ordering::Relaxed);
-        let made = if before + bytes > limits::SAMPLE_BUS_BYTES_MAX {
+        let made = if before + bytes > place.most_bytes {
             Err(std::io::Error::other(format!(
                 "the rings of this mount would take more than {} MiB",
-                limits::SAMPLE_BUS_BYTES_MAX >> 20
+                place.most_bytes >> 20
             )))
         } else {
             Writer::create(&file, tuple_bytes, rights).map_err(|error| {
@@ -243,7 +253,11 @@ mod tests {
         let bus = SampleBus::default();
         let directory = Directory::take(&scratch.path("trikfs+test"), 0o700).unwrap();
         let readers = Readers::Owner;
-        let place = Place { directory, readers };
+        let place = Place {
+            directory,
+            readers,
+            most_bytes: limits::SAMPLE_BUS_BYTES_MAX,
+        };
         let rights = Rights {
             mode: 0o400,
             group: None,

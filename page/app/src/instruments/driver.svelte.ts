@@ -62,8 +62,8 @@ export class Driver {
   #rest(held: Map<string, string>): void {
     const { desk } = this;
     if (desk.why === '') for (const path of held.keys()) desk.rest(path);
-    // There is no order but the stop, and what was held must not go on. Who has lost the control has been brought to rest by the
-    // robot already: a stop from here would halt whatever the next one drives.
+    // Without control the only order is a stop, and what was held must not go on. If another browser has taken the control, the
+    // robot has brought it to rest already, and a stop from here would halt what that browser drives.
     else if (!desk.robot.isOthers && held.size > 0) desk.robot.stop();
   }
 

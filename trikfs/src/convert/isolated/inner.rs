@@ -7,7 +7,7 @@ use super::blame_number;
 use super::calls::{Stage, confine};
 use super::memory::Shared;
 use super::process::room;
-use super::words::{Load, Reply, Request};
+use super::words::{Answer, Closed, Load, Loaded, Many, One, Opened, Request, Sealed};
 use crate::convert::shared::{Library, LibraryError, NativeStage, OpenInfo};
 use crate::events::lock;
 use crate::failure::Failure;
@@ -134,18 +134,9 @@ const UNKNOWN: &str = "there is no such converter here";
 
 impl Inner {
     fn answer(&mut self, request: Request<'_>, out: &mut Vec<u8>) {
-        let reply = match request {
-            Request::Load(load) => self.load(&load),
-            Request::Seal => {
-                // The first three as well: a constructor may have others under their numbers.
-                let is_closed = close_from(0).is_ok();
-                let is_sealed = confine(Stage::Sealed) && is_closed;
-                Reply::Sealed {
-                    // What the kernel could do before, a library has undone.
-                    is_resisted: self.is_confined && !is_sealed,
-                    is_confined: self.is_confined && is_sealed,
-                }
-            }
+        match request {
+            Request::Load(load) => self.load(&load).write(out),
+            Request::Seal => self.seal().write(out),
             Request::Open {
                 library,
                 direction,
@@ -153,37 +144,48 @@ impl Inner {
                 output_size,
                 node,
                 params,
-            } => self.open(
-                library,
-                direction,
-                [input_size, output_size],
-                &node,
-                &params,
-            ),
+            } => {
+                let sizes = [input_size, output_size];
+                self.open(library, direction, sizes, &node, &params)
+                    .write(out);
+            }
             Request::Close { instance } => {
                 if let Some(stage) = self.stages.get_mut(instance as usize) {
                     *stage = None;
                 }
-                Reply::Done
+                Closed.write(out);
             }
-            Request::One { instance, tuple } => self.one(instance, tuple),
+            Request::One { instance, tuple } => self.one(instance, tuple).write(out),
             Request::Many {
                 instance,
                 input_bytes,
                 output_bytes,
-            } => self.many(instance, input_bytes as usize, output_bytes as usize),
-        };
-        reply.write(out);
+            } => {
+                let many = self.many(instance, input_bytes as usize, output_bytes as usize);
+                many.write(out);
+            }
+        }
     }
 
-    fn load(&mut self, load: &Load) -> Reply<'static> {
+    fn seal(&mut self) -> Sealed {
+        // The first three as well: a constructor may have others under their numbers.
+        let is_closed = close_from(0).is_ok();
+        let is_sealed = confine(Stage::Sealed) && is_closed;
+        Sealed {
+            is_confined: self.is_confined && is_sealed,
+            // What the kernel could do before, a library has undone.
+            is_resisted: self.is_confined && !is_sealed,
+        }
+    }
+
+    fn load(&mut self, load: &Load) -> Loaded {
         let file = Path::new(&load.file);
         match Library::load_copy(file, &load.shown, &load.short, load.name.as_deref()) {
             Ok(library) => {
                 self.libraries.push(library);
-                Reply::Done
+                Loaded::Done
             }
-            Err(error) => Reply::Refused {
+            Err(error) => Loaded::Refused {
                 blame: blame_number(error.blame()),
                 why: match error {
                     LibraryError::Library { why, .. } => why.to_string(),
@@ -200,9 +202,9 @@ impl Inner {
         sizes: [u32; 2],
         node: &str,
         params: &BTreeMap<String, f64>,
-    ) -> Reply<'static> {
+    ) -> Opened {
         let Some(library) = self.libraries.get(library as usize) else {
-            return Reply::Fault(UNKNOWN.to_owned());
+            return Opened::Fault(UNKNOWN.to_owned());
         };
         let log = Arc::new(Mutex::new(Vec::<String>::new()));
         let heard = Arc::clone(&log);
@@ -229,40 +231,44 @@ impl Inner {
                 }
                 self.stages[at] = Some(stage);
                 let log = std::mem::take(&mut *lock(&log));
-                Reply::Opened {
+                Opened::Done {
                     instance: u32::try_from(at).unwrap_or(u32::MAX),
                     log,
                 }
             }
-            Err(fault) => Reply::Fault(fault.to_string()),
+            Err(fault) => Opened::Fault(fault.to_string()),
         }
     }
 
-    fn one(&mut self, instance: u32, tuple: &[u8]) -> Reply<'_> {
+    fn one(&mut self, instance: u32, tuple: &[u8]) -> One<'_> {
         let Some(Some(stage)) = self.stages.get_mut(instance as usize) else {
-            return Reply::Fault(UNKNOWN.to_owned());
+            return One::Fault(UNKNOWN.to_owned());
         };
         self.made.resize(stage.output_size(), 0);
         match stage.convert(tuple, &mut self.made) {
-            Ok(Conversion::Produced) => Reply::Produced(&self.made),
-            Ok(Conversion::Consumed) => Reply::Consumed,
-            Err(fault) => Reply::Fault(fault.to_string()),
+            Ok(Conversion::Produced) => One::Produced(&self.made),
+            Ok(Conversion::Consumed) => One::Consumed,
+            Err(fault) => One::Fault(fault.to_string()),
         }
     }
 
-    fn many(&mut self, instance: u32, input_bytes: usize, output_bytes: usize) -> Reply<'static> {
+    fn many(&mut self, instance: u32, input_bytes: usize, output_bytes: usize) -> Many {
+        let unknown = || Many {
+            taken: 0,
+            made: 0,
+            fault: Some(UNKNOWN.to_owned()),
+        };
         let Some(Some(stage)) = self.stages.get_mut(instance as usize) else {
-            return Reply::Fault(UNKNOWN.to_owned());
+            return unknown();
         };
         let Some((input, output, progress)) = self.shared.batch(input_bytes, output_bytes) else {
-            return Reply::Fault(UNKNOWN.to_owned());
+            return unknown();
         };
-        progress.tell(0, 0);
         let (taken, made, fault) = stage.convert_watched(input, output, |taken, made| {
             progress.tell(taken, made);
         });
         let word = |number| u32::try_from(number).unwrap_or(u32::MAX);
-        Reply::Many {
+        Many {
             taken: word(taken),
             made: word(made),
             fault: fault.map(|fault| fault.to_string()),

@@ -7,6 +7,7 @@
 //! all are started by one thread, which lives as long as the daemon.
 
 use super::memory::{Shared, Waited};
+use crate::failure::Blame;
 use crate::limits::{ISOLATED_BATCH_WAITS, ISOLATED_IDLE, ISOLATED_LOOK, ISOLATED_MESSAGE_BYTES};
 use crate::process;
 use nix::sys::signal::Signal;
@@ -47,6 +48,23 @@ pub(super) enum Lost {
     Absent,
     /// It has said what no process of ours says.
     Rubbish,
+}
+
+impl Lost {
+    /// The person or the part that can mend it.
+    pub(super) fn blame(&self) -> Blame {
+        match self {
+            Self::NotStarted(_) | Self::Stopped => Blame::Machine,
+            Self::NotLoaded(..)
+            | Self::Killed(_)
+            | Self::Exited(_)
+            | Self::Late(_)
+            | Self::Slow(_)
+            | Self::Resists
+            | Self::Absent
+            | Self::Rubbish => Blame::Converter,
+        }
+    }
 }
 
 impl fmt::Display for Lost {
@@ -183,8 +201,8 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         let _ = self.child.kill();
-        // Most are gone at once. One that waits for a file of our own tree is gone when that is answered, perhaps by the thread
-        // that is here: somebody else waits for it then.
+        // One that waits for a file of our own tree ends when that is answered, perhaps by the thread that is here: so somebody
+        // else waits for it.
         if let Ok(None) = self.child.try_wait() {
             reap(self.child.id());
         }

@@ -43,32 +43,67 @@ pub(super) struct Load {
     pub(super) name: Option<String>,
 }
 
-/// What the process answers.
+/// An answer to one kind of request. Of an answer to another kind [`Answer::read`] makes nothing.
+pub(super) trait Answer<'a>: Sized {
+    /// Appends it to a message.
+    fn write(&self, out: &mut Vec<u8>);
+    /// Reads a whole message; None: it is none.
+    fn read(message: &'a [u8]) -> Option<Self>;
+}
+
+/// To [`Request::Load`].
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Reply<'a> {
-    /// It was done.
+pub(super) enum Loaded {
     Done,
-    /// It was refused. Of a library: by whose fault, as [`super::blame_of`] has it.
-    Refused { blame: u8, why: String },
-    /// Whether the kernel holds the process to its few system calls, and whether a library has kept it from that.
-    Sealed {
-        is_confined: bool,
-        is_resisted: bool,
+    /// By whose fault, as [`super::blame_of`] has it, and why.
+    Refused {
+        blame: u8,
+        why: String,
     },
+}
+
+/// To [`Request::Seal`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Sealed {
+    /// The kernel holds the process to its few system calls.
+    pub(super) is_confined: bool,
+    /// A library has kept it from that.
+    pub(super) is_resisted: bool,
+}
+
+/// To [`Request::Open`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Opened {
     /// The number of the new state, and what the converter has logged.
-    Opened { instance: u32, log: Vec<String> },
+    Done {
+        instance: u32,
+        log: Vec<String>,
+    },
+    Fault(String),
+}
+
+/// To [`Request::Close`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Closed;
+
+/// To [`Request::One`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum One<'a> {
     /// The tuple was taken and gave nothing yet.
     Consumed,
     /// The tuple that came of it.
     Produced(&'a [u8]),
-    /// It could not be converted.
     Fault(String),
-    /// So many tuples were taken and made, and why no more, if it was a fault.
-    Many {
-        taken: u32,
-        made: u32,
-        fault: Option<String>,
-    },
+}
+
+/// To [`Request::Many`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Many {
+    /// So many tuples were taken and made.
+    pub(super) taken: u32,
+    pub(super) made: u32,
+    /// Why no more.
+    pub(super) fault: Option<String>,
 }
 
 impl<'a> Request<'a> {
@@ -169,73 +204,133 @@ impl<'a> Request<'a> {
     }
 }
 
-impl<'a> Reply<'a> {
-    /// Appends it to a message.
-    pub(super) fn write(&self, out: &mut Vec<u8>) {
+impl Answer<'_> for Loaded {
+    fn write(&self, out: &mut Vec<u8>) {
         match self {
-            Self::Done => out.push(0),
+            Self::Done => out.push(10),
             Self::Refused { blame, why } => {
-                out.extend([1, *blame]);
+                out.extend([11, *blame]);
                 put_text(out, why);
             }
-            Self::Sealed {
-                is_confined,
-                is_resisted,
-            } => out.extend([2, u8::from(*is_confined), u8::from(*is_resisted)]),
-            Self::Opened { instance, log } => {
-                out.push(3);
+        }
+    }
+
+    fn read(message: &[u8]) -> Option<Self> {
+        let mut rest = Rest(message);
+        let answer = match rest.byte()? {
+            10 => Self::Done,
+            11 => Self::Refused {
+                blame: rest.byte()?,
+                why: rest.text()?,
+            },
+            _ => return None,
+        };
+        rest.is_empty().then_some(answer)
+    }
+}
+
+impl Answer<'_> for Sealed {
+    fn write(&self, out: &mut Vec<u8>) {
+        out.extend([20, u8::from(self.is_confined), u8::from(self.is_resisted)]);
+    }
+
+    fn read(message: &[u8]) -> Option<Self> {
+        let mut rest = Rest(message);
+        rest.tag(20)?;
+        let answer = Self {
+            is_confined: rest.byte()? != 0,
+            is_resisted: rest.byte()? != 0,
+        };
+        rest.is_empty().then_some(answer)
+    }
+}
+
+impl Answer<'_> for Opened {
+    fn write(&self, out: &mut Vec<u8>) {
+        match self {
+            Self::Done { instance, log } => {
+                out.push(30);
                 put(out, *instance);
                 put_length(out, log.len());
                 for line in log {
                     put_text(out, line);
                 }
             }
-            Self::Consumed => out.push(4),
-            Self::Produced(tuple) => {
-                out.push(5);
-                out.extend_from_slice(tuple);
-            }
             Self::Fault(why) => {
-                out.push(6);
+                out.push(31);
                 put_text(out, why);
-            }
-            Self::Many { taken, made, fault } => {
-                out.push(7);
-                put(out, *taken);
-                put(out, *made);
-                put_option(out, fault.as_deref());
             }
         }
     }
 
-    /// Reads a whole message; None: it is none.
-    pub(super) fn read(message: &'a [u8]) -> Option<Self> {
+    fn read(message: &[u8]) -> Option<Self> {
         let mut rest = Rest(message);
-        let reply = match rest.byte()? {
-            0 => Self::Done,
-            1 => Self::Refused {
-                blame: rest.byte()?,
-                why: rest.text()?,
-            },
-            2 => Self::Sealed {
-                is_confined: rest.byte()? != 0,
-                is_resisted: rest.byte()? != 0,
-            },
-            3 => Self::Opened {
+        let answer = match rest.byte()? {
+            30 => Self::Done {
                 instance: rest.number()?,
                 log: rest.texts()?,
             },
-            4 => Self::Consumed,
-            5 => Self::Produced(rest.all()),
-            6 => Self::Fault(rest.text()?),
-            7 => Self::Many {
-                taken: rest.number()?,
-                made: rest.number()?,
-                fault: rest.option()?,
-            },
+            31 => Self::Fault(rest.text()?),
             _ => return None,
         };
-        rest.is_empty().then_some(reply)
+        rest.is_empty().then_some(answer)
+    }
+}
+
+impl Answer<'_> for Closed {
+    fn write(&self, out: &mut Vec<u8>) {
+        out.push(40);
+    }
+
+    fn read(message: &[u8]) -> Option<Self> {
+        (message == [40]).then_some(Self)
+    }
+}
+
+impl<'a> Answer<'a> for One<'a> {
+    fn write(&self, out: &mut Vec<u8>) {
+        match self {
+            Self::Consumed => out.push(50),
+            Self::Produced(tuple) => {
+                out.push(51);
+                out.extend_from_slice(tuple);
+            }
+            Self::Fault(why) => {
+                out.push(52);
+                put_text(out, why);
+            }
+        }
+    }
+
+    fn read(message: &'a [u8]) -> Option<Self> {
+        let mut rest = Rest(message);
+        let answer = match rest.byte()? {
+            50 => Self::Consumed,
+            51 => Self::Produced(rest.all()),
+            52 => Self::Fault(rest.text()?),
+            _ => return None,
+        };
+        rest.is_empty().then_some(answer)
+    }
+}
+
+impl Answer<'_> for Many {
+    fn write(&self, out: &mut Vec<u8>) {
+        out.push(60);
+        put(out, self.taken);
+        put(out, self.made);
+        put_option(out, self.fault.as_deref());
+    }
+
+    fn read(message: &[u8]) -> Option<Self> {
+        let mut rest = Rest(message);
+        rest.tag(60)?;
+        let answer = Self {
+            taken: rest.number()?,
+            made: rest.number()?,
+            fault: rest.option()?,
+        };
+        rest.is_empty().then_some(answer)
     }
 }
 
@@ -280,6 +375,11 @@ impl<'a> Rest<'a> {
 
     fn byte(&mut self) -> Option<u8> {
         self.bytes(1)?.first().copied()
+    }
+
+    /// The byte that this kind of message begins with.
+    fn tag(&mut self, wanted: u8) -> Option<()> {
+        (self.byte()? == wanted).then_some(())
     }
 
     fn number(&mut self) -> Option<u32> {
@@ -351,61 +451,90 @@ mod tests {
         ]
     }
 
-    fn replies() -> Vec<Reply<'static>> {
-        vec![
-            Reply::Done,
-            Reply::Refused {
-                blame: 2,
-                why: "no such library".to_owned(),
-            },
-            Reply::Sealed {
-                is_confined: true,
-                is_resisted: false,
-            },
-            Reply::Opened {
-                instance: 9,
-                log: vec!["a line".to_owned(), String::new()],
-            },
-            Reply::Consumed,
-            Reply::Produced(&[0, 255]),
-            Reply::Fault("no echo".to_owned()),
-            Reply::Many {
-                taken: 5,
-                made: 4,
-                fault: Some("no echo".to_owned()),
-            },
-        ]
-    }
-
     #[test]
-    fn each_message_is_read_as_it_was_written_and_not_without_its_end() {
+    fn each_request_is_read_as_it_was_written() {
         for request in requests() {
             let mut message = Vec::new();
             request.write(&mut message);
             assert_eq!(Request::read(&message), Some(request), "{message:?}");
         }
-        for reply in replies() {
-            let mut message = Vec::new();
-            reply.write(&mut message);
-            assert_eq!(Reply::read(&message), Some(reply), "{message:?}");
-            let is_tuple = matches!(message[0], 5);
-            let cut = Reply::read(&message[..message.len() - 1]);
-            assert!(is_tuple || cut.is_none(), "{message:?}");
-            let mut longer = message.clone();
-            longer.push(0);
-            assert!(is_tuple || Reply::read(&longer).is_none(), "{message:?}");
+    }
+
+    /// It comes back, and is nothing without its end or with more; of a tuple each end is one.
+    fn check<'a, A: Answer<'a> + PartialEq + std::fmt::Debug>(answer: &A, is_tuple: bool) {
+        let mut message = Vec::new();
+        answer.write(&mut message);
+        let message: &'static [u8] = message.leak();
+        let longer: &'static [u8] = [message, &[0]].concat().leak();
+        assert_eq!(A::read(message).as_ref(), Some(answer));
+        if !is_tuple {
+            assert_eq!(A::read(&message[..message.len() - 1]), None, "{answer:?}");
+            assert_eq!(A::read(longer), None, "{answer:?}");
         }
     }
 
+    #[test]
+    fn each_answer_is_read_as_it_was_written_and_not_without_its_end() {
+        let why = || "no echo".to_owned();
+        check(&Loaded::Done, false);
+        check(
+            &Loaded::Refused {
+                blame: 2,
+                why: why(),
+            },
+            false,
+        );
+        for (is_confined, is_resisted) in [(true, false), (false, true)] {
+            let sealed = Sealed {
+                is_confined,
+                is_resisted,
+            };
+            check(&sealed, false);
+        }
+        let log = vec!["a line".to_owned(), String::new()];
+        check(&Opened::Done { instance: 9, log }, false);
+        check(&Opened::Fault(why()), false);
+        check(&Closed, false);
+        check(&One::Consumed, false);
+        check(&One::Produced(&[0, 255]), true);
+        check(&One::Fault(why()), false);
+        for fault in [None, Some(why())] {
+            let many = Many {
+                taken: 5,
+                made: 4,
+                fault,
+            };
+            check(&many, false);
+        }
+    }
+
+    #[test]
+    fn an_answer_to_another_request_is_none() {
+        let mut message = Vec::new();
+        Closed.write(&mut message);
+        assert_eq!(Loaded::read(&message), None);
+        assert_eq!(Sealed::read(&message), None);
+        assert_eq!(Opened::read(&message), None);
+        assert_eq!(One::read(&message), None);
+        assert_eq!(Many::read(&message), None);
+    }
+
+    /// What is a message is written as it was read.
+    fn comes_back<'a, A: Answer<'a>>(bytes: &'a [u8]) -> bool {
+        A::read(bytes).is_none_or(|answer| {
+            let mut again = Vec::new();
+            answer.write(&mut again);
+            again.len() == bytes.len()
+        })
+    }
+
     proptest! {
-        /// Whatever is no message is refused, and what is one is written as it was read.
         #[test]
-        fn bytes_of_a_converter_are_a_message_or_nothing(bytes: Vec<u8>) {
-            if let Some(reply) = Reply::read(&bytes) {
-                let mut again = Vec::new();
-                reply.write(&mut again);
-                prop_assert_eq!(again.len(), bytes.len());
-            }
+        fn bytes_of_a_converter_are_an_answer_or_nothing(tag in 0..70_u8, rest: Vec<u8>) {
+            let bytes = [&[tag][..], &rest].concat();
+            prop_assert!(comes_back::<Loaded>(&bytes) && comes_back::<Sealed>(&bytes));
+            prop_assert!(comes_back::<Opened>(&bytes) && comes_back::<Closed>(&bytes));
+            prop_assert!(comes_back::<One>(&bytes) && comes_back::<Many>(&bytes));
         }
     }
 }

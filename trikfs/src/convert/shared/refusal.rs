@@ -111,10 +111,8 @@ pub enum Wrong {
         /// The names that there are.
         names: Vec<String>,
     },
-    /// What the process that loads it instead of this one says, and by whose fault.
+    /// What the process that loads it instead of this one says, or what has become of that process, and by whose fault.
     Told(Blame, String),
-    /// What has become of that process.
-    Lost(String),
 }
 
 /// Why bytes are not a shared library for this machine.
@@ -147,7 +145,6 @@ impl LibraryError {
                 | Wrong::Linker(_)
                 | Wrong::NoSymbol
                 | Wrong::Table(_)
-                | Wrong::Lost(_)
                 | Wrong::Empty => Blame::Converter,
                 Wrong::Told(blame, _) => *blame,
             },
@@ -180,7 +177,7 @@ impl fmt::Display for Wrong {
             Self::NotAFile => f.write_str("not a regular file"),
             Self::TooLarge => write!(f, "larger than {} bytes", limits::LIBRARY_BYTES_MAX),
             Self::Elf(why) => write!(f, "{why}"),
-            Self::Linker(text) | Self::Told(_, text) | Self::Lost(text) => f.write_str(text),
+            Self::Linker(text) | Self::Told(_, text) => f.write_str(text),
             Self::NoExec(text) => write!(
                 f,
                 "{text}; a file system mounted noexec cannot hold the cache, choose another place with --cache"
