@@ -3,6 +3,7 @@
 //! Owns the reading of /proc and of the control groups' files. What follows from the number is known to others.
 
 use crate::limits;
+use crate::mount::{MountEntry, parse_mountinfo};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,9 +17,8 @@ pub fn bytes() -> u64 {
 /// What the control group of this process allows, with those above it; None: nothing less than everything. `root` is where
 /// /proc and all mounts are.
 fn group_bytes(root: &Path) -> Option<u64> {
-    let text = |path: &str| fs::read_to_string(root.join(path)).ok();
-    let groups = text("proc/self/cgroup")?;
-    let mounts = text("proc/self/mountinfo")?;
+    let groups = fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
+    let mounts = fs::read(root.join("proc/self/mountinfo")).ok()?;
     let mut least = None;
     // NUMBER:CONTROLLERS:PATH; without controllers it is the second version, which has all of them.
     for line in groups.lines() {
@@ -49,22 +49,15 @@ fn below(root: &Path, path: &Path) -> PathBuf {
 }
 
 /// Where a group is, and the top of its tree. In a container the path may be that outside; then the group is the top.
-fn mounted(mounts: &str, kind: &str, group: &str) -> Option<(PathBuf, PathBuf)> {
-    // NUMBER PARENT DEVICE ROOT PLACE OPTIONS... - KIND SOURCE OPTIONS (proc_pid_mountinfo(5))
-    mounts.lines().find_map(|line| {
-        let (before, after) = line.split_once(" - ")?;
-        let mut after = after.split(' ');
-        let is_kind = after.next() == Some(kind);
-        let options = after.nth(1).unwrap_or_default();
-        if !is_kind || (kind == "cgroup" && options.split(',').all(|one| one != "memory")) {
-            return None;
-        }
-        let mut words = before.split(' ').skip(3);
-        let (root, place) = (words.next()?, PathBuf::from(words.next()?));
-        let inside = Path::new(group).strip_prefix(root).ok();
-        let folder = inside.map(|inside| place.join(inside));
-        Some((folder.unwrap_or_else(|| place.clone()), place))
-    })
+fn mounted(mounts: &[u8], kind: &str, group: &str) -> Option<(PathBuf, PathBuf)> {
+    let is_of_memory = |mount: &MountEntry| {
+        kind == "cgroup2" || mount.options.split(',').any(|one| one == "memory")
+    };
+    let mount = parse_mountinfo(mounts).find(|mount| mount.kind == kind && is_of_memory(mount))?;
+    let inside = Path::new(group).strip_prefix(&mount.root).ok();
+    let folder = inside.map(|inside| mount.mountpoint.join(inside));
+    let top = mount.mountpoint;
+    Some((folder.unwrap_or_else(|| top.clone()), top))
 }
 
 /// Of the first version, whose group knows the limits above it.
@@ -148,11 +141,11 @@ mod tests {
 
     #[test]
     fn in_a_container_the_group_may_be_the_top_of_what_is_mounted() {
-        let mounts = "31 25 0:27 /docker/1 /sys/fs/cgroup rw - cgroup2 cgroup2 rw\n";
+        let mounts = "31 25 0:27 /docker/1 /sys/my\\040groups rw - cgroup2 cgroup2 rw\n";
         let root = root(&[
             ("proc/self/cgroup", "0::/elsewhere\n"),
             ("proc/self/mountinfo", mounts),
-            ("sys/fs/cgroup/memory.max", "70000000\n"),
+            ("sys/my groups/memory.max", "70000000\n"),
         ]);
         assert_eq!(group_bytes(&root.path("")), Some(70_000_000));
     }

@@ -227,12 +227,16 @@ pub struct MountEntry {
     pub id: u32,
     /// Device number of the filesystem; the minor one names a FUSE connection in /sys/fs/fuse/connections.
     pub device: (u32, u32),
+    /// What of the filesystem is there: `/` if it is all of it.
+    pub root: PathBuf,
     /// Where it is.
     pub mountpoint: PathBuf,
     /// Type, for example `fuse.trikfs`.
     pub kind: String,
     /// What was mounted.
     pub source: OsString,
+    /// Options of the filesystem as a whole, separated by commas.
+    pub options: String,
 }
 
 /// The mounts in the text of /proc/self/mountinfo. Lines that are not understood are left out.
@@ -245,16 +249,20 @@ fn parse_line(line: &[u8]) -> Option<MountEntry> {
     let mut fields = line.split(|&b| b == b' ');
     let id = number(fields.next()?)?;
     let (_parent, device) = (fields.next()?, fields.next()?);
-    let (_root, mountpoint) = (fields.next()?, fields.next()?);
+    let (root, mountpoint) = (fields.next()?, fields.next()?);
     let colon = device.iter().position(|&b| b == b':')?;
     let mut behind = fields.skip_while(|&field| field != b"-").skip(1);
     let kind = String::from_utf8(unescape(behind.next()?)).ok()?;
+    let source = OsString::from_vec(unescape(behind.next()?));
+    let options = behind.next().unwrap_or_default();
     Some(MountEntry {
         id,
         device: (number(&device[..colon])?, number(&device[colon + 1..])?),
+        root: PathBuf::from(OsString::from_vec(unescape(root))),
         mountpoint: PathBuf::from(OsString::from_vec(unescape(mountpoint))),
         kind,
-        source: OsString::from_vec(unescape(behind.next()?)),
+        source,
+        options: String::from_utf8_lossy(&unescape(options)).into_owned(),
     })
 }
 

@@ -64,9 +64,11 @@ fn the_mount_table_is_read_with_its_escapes() {
     let expected = MountEntry {
         id: 40,
         device: (0, 50),
+        root: "/".into(),
         mountpoint: "/mnt/my robot".into(),
         kind: "fuse.trikfs".into(),
         source: "tr\\ik".into(),
+        options: "rw,user_id=0".to_owned(),
     };
     assert_eq!(entries[1], expected);
     assert_eq!(

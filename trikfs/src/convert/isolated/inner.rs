@@ -13,6 +13,7 @@ use crate::events::lock;
 use crate::failure::Failure;
 use crate::limits::{
     ISOLATED_DATA_BYTES, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_BYTES, ISOLATED_LOG_LINES,
+    ISOLATED_ORPHAN_LOOK,
 };
 use converter::{Conversion, Direction};
 use nix::sys::prctl::set_pdeathsig;
@@ -49,8 +50,10 @@ pub fn run(daemon: i32) -> Result<(), Failure> {
     let mut room = room();
     let mut reply = Vec::new();
     loop {
+        // The kernel ends it with the daemon. Where no filter holds it, a library may have undone that.
+        let patience = (!inner.is_confined).then_some(ISOLATED_ORPHAN_LOOK);
         let is_over = || getppid().as_raw() != daemon;
-        let message = inner.shared.next(&mut room, is_over);
+        let message = inner.shared.next(&mut room, patience, is_over);
         let Some(request) = message.and_then(Request::read) else {
             return Err(fail(io::ErrorKind::InvalidData.into()));
         };

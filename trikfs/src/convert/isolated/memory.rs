@@ -4,9 +4,7 @@
 //! Owns where in it what is, its mapping, which is the only `unsafe` here, and the waiting for the other side. The daemon copies
 //! what it needs out before it looks at it, so that nothing changes under its hands, and the memory cannot be made shorter.
 
-use crate::limits::{
-    ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES, ISOLATED_ORPHAN_LOOK, ISOLATED_TUPLES,
-};
+use crate::limits::{ISOLATED_BYTES, ISOLATED_MESSAGE_BYTES, ISOLATED_TUPLES};
 use nix::fcntl::{FcntlArg, SealFlag, fcntl};
 use nix::sys::memfd::{MFdFlags, memfd_create};
 use rustix::thread::futex;
@@ -207,19 +205,20 @@ impl Shared {
     // The side of the process.
 
     /// Waits for the next message and copies it to the beginning of `into`. None: nobody wants anything any more, as `is_over`
-    /// tells, which is asked from time to time.
+    /// tells, which is asked after each `patience`; without one it is never asked, and each wait is cheaper by a timer.
     pub(super) fn next<'a>(
         &self,
         into: &'a mut [u8],
+        patience: Option<Duration>,
         is_over: impl Fn() -> bool,
     ) -> Option<&'a [u8]> {
         let turn = self.number(TURN_AT);
-        let time = timespec(ISOLATED_ORPHAN_LOOK);
+        let time = patience.map(timespec);
         loop {
             match turn.load(Ordering::Acquire) {
                 ASKED | AWAITED => return self.take_message(into),
                 other @ (BEGIN | ANSWERED) => {
-                    let waited = futex::wait(turn, futex::Flags::empty(), other, Some(&time));
+                    let waited = futex::wait(turn, futex::Flags::empty(), other, time.as_ref());
                     if waited == Err(rustix::io::Errno::TIMEDOUT) && is_over() {
                         return None;
                     }
@@ -295,7 +294,7 @@ mod tests {
             scope.spawn(move || {
                 let mut room = [0; 64];
                 for _ in 0..100 {
-                    let mut message = process.next(&mut room, || false).unwrap().to_vec();
+                    let mut message = process.next(&mut room, None, || false).unwrap().to_vec();
                     message.reverse();
                     process.reply(&message);
                 }
@@ -335,6 +334,8 @@ mod tests {
             (0, 0),
             "nothing of the next batch is done"
         );
+        let nothing = process.next(&mut [0; 8], Some(SHORT), || true).is_none();
+        assert!(nothing, "nobody is there any more");
         assert!(process.batch(ISOLATED_BYTES + 1, 0).is_none());
         assert!(process.batch(0, ISOLATED_BYTES + 1).is_none());
     }
