@@ -7,13 +7,14 @@
 //!
 //! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the
 //! daemon, `watch` waits for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators;
-//! `oversight` is how the daemon sees to it that this process is not stopped.
+//! `oversight` is how the daemon sees to it that this process is not stopped; `hurry` is the priority of what must not be late.
 
 // An end of the daemon, or a device to bring to rest, that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod actions;
 mod child;
+mod hurry;
 pub mod inherit;
 pub mod ledger;
 pub mod mounted;
@@ -27,6 +28,7 @@ use crate::mount::{self, MountOptions};
 use crate::sample_bus;
 use crate::transport::native::invalidate_message;
 use child::Child;
+use hurry::Hurry;
 use ledger::Ledger;
 use mounted::Mounted;
 use std::collections::VecDeque;
@@ -34,7 +36,7 @@ use std::ffi::OsString;
 use std::os::fd::OwnedFd;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use watch::{End, Watch};
+use watch::{End, LastMoment, Watch};
 
 /// What to guard.
 pub struct Plan {
@@ -89,12 +91,19 @@ fn serve_once(
             return Err(error.into());
         }
     };
-    let end =
-        Child::start(&device, ledger, &mounted, &plan.arguments, again).and_then(|mut child| {
-            let (is_there, cut_off) = (|| mounted.is_there(), || mounted.abort());
-            watch.until_end(&mut child, &is_there, &cut_off, ready)
-        });
+    let child = Child::start(&device, ledger, &mounted, &plan.arguments, again);
+    // The daemon has the priority that it was started with.
+    let hurry = Hurry::begin();
+    let end = child.and_then(|mut child| {
+        let last_moment = LastMoment {
+            // What fails is told by the second time.
+            rest: &|| drop(rest::bring_to_rest(&ledger.rest())),
+            cut_off: &|| mounted.abort(),
+        };
+        watch.until_end(&mut child, &|| mounted.is_there(), &last_moment, ready)
+    });
     clean_up(ledger, &mounted, device);
+    drop(hurry);
     end.map_err(|error| Failure::system("daemon", error))
 }
 

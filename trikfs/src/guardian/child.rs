@@ -144,6 +144,11 @@ impl Child {
         matches!(seen, Ok(WaitStatus::Stopped(..)))
     }
 
+    /// Whether it has ended wholly, with all its threads.
+    pub(super) fn is_gone(&mut self) -> bool {
+        matches!(self.process.try_wait(), Ok(Some(_)))
+    }
+
     fn signal(&self, signal: Signal) {
         // The number is its own until `wait`: a dead child keeps it.
         if let Ok(pid) = i32::try_from(self.process.id()) {

@@ -5,6 +5,7 @@
 //! the daemon's business, which finds SIGTERM, SIGINT and SIGHUP blocked.
 
 use super::clean_up;
+use super::hurry::Hurry;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
 use crate::failure::Failure;
@@ -86,6 +87,8 @@ impl Lifeline {
             .name("lifeline".to_owned())
             .spawn(move || {
                 let _ = separated.send(separate(number).is_ok());
+                // It has to run once more in order to end, and all that it does is wait.
+                Hurry::for_good();
                 let mut pipe = File::from(pipe);
                 for (word, said) in to_say {
                     // If nobody listens, the guardian is dead and its signal is on the way.

@@ -30,6 +30,14 @@ pub(super) enum End {
     Crashed(String),
 }
 
+/// What is done for a daemon that was killed and whose threads have not all ended, which takes a moment on a busy machine.
+pub(super) struct LastMoment<'a> {
+    /// Brings the actuators to rest. It is done once more after the last thread has ended, which may be inside a device.
+    pub(super) rest: &'a dyn Fn(),
+    /// Ends the connection, in which a thread hangs.
+    pub(super) cut_off: &'a dyn Fn(),
+}
+
 /// What the guardian listens to for as long as it lives.
 pub(super) struct Watch {
     signals: SignalFd,
@@ -59,13 +67,13 @@ impl Watch {
     }
 
     /// Waits for the daemon's end. Brings it about when a signal comes or the mount goes: first by asking, after two
-    /// seconds by force. `cut_off` ends the connection, for a daemon that is dead and hangs in it. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
+    /// seconds by force. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
     /// actuators driven and requests unanswered. `ready` is called when the daemon says that it serves.
     pub(super) fn until_end(
         &self,
         child: &mut Child,
         mounted: &dyn Fn() -> bool,
-        cut_off: &dyn Fn(),
+        last_moment: &LastMoment<'_>,
         ready: &mut dyn FnMut(usize),
     ) -> io::Result<End> {
         let grace = Duration::from_millis(limits::GRACE_MS.into());
@@ -89,7 +97,10 @@ impl Watch {
                     // A signal from a terminal reaches the daemon as well, and it may be the first to end.
                     Heard::End => {
                         let asked = stop || urgency != Urgency::None;
-                        let Some(status) = child.wait(cut_off)? else {
+                        if life != Life::Over && !child.is_gone() {
+                            (last_moment.rest)();
+                        }
+                        let Some(status) = child.wait(last_moment.cut_off)? else {
                             return Ok(hanging(asked));
                         };
                         if standstill.was_killed && !asked {
@@ -241,16 +252,47 @@ fn judge(status: ExitStatus, asked: bool, life: Life) -> End {
 mod tests {
     use super::*;
     use nix::sys::pthread::{pthread_kill, pthread_self};
+    use std::cell::Cell;
+
+    /// Nothing.
+    const LEFT_ALONE: LastMoment<'static> = LastMoment {
+        rest: &|| {},
+        cut_off: &|| {},
+    };
 
     fn end_of(script: &str) -> (End, Vec<usize>) {
         let mut heard = Vec::new();
         let mut child = Child::shell(script);
+        let mut ready = |nodes| heard.push(nodes);
         let end = Watch::new()
-            .and_then(|watch| {
-                watch.until_end(&mut child, &|| true, &|| {}, &mut |nodes| heard.push(nodes))
-            })
+            .and_then(|watch| watch.until_end(&mut child, &|| true, &LEFT_ALONE, &mut ready))
             .expect("watched");
         (end, heard)
+    }
+
+    #[test]
+    fn actuators_rest_before_the_last_thread_has_ended() {
+        let rests_before_the_end_of = |script| {
+            let rests = Cell::new(0);
+            let mut child = Child::shell(script);
+            let watch = Watch::new().expect("watch");
+            let last_moment = LastMoment {
+                rest: &|| rests.set(rests.get() + 1),
+                cut_off: &|| {},
+            };
+            let end = watch.until_end(&mut child, &|| true, &last_moment, &mut |_| {});
+            end.expect("watched");
+            rests.get()
+        };
+        // The line ends, the process does not: so it is while a thread hangs.
+        assert_eq!(
+            rests_before_the_end_of("echo ready 1; exec >&-; exec sleep 1000"),
+            1
+        );
+        assert_eq!(
+            rests_before_the_end_of("echo over; exec >&-; exec sleep 1000"),
+            0
+        );
     }
 
     #[test]
@@ -310,7 +352,7 @@ mod tests {
             pthread_kill(pthread_self(), Signal::SIGTERM).expect("sent to this thread");
         };
         let end = watch
-            .until_end(&mut child, &|| true, &|| {}, &mut ready)
+            .until_end(&mut child, &|| true, &LEFT_ALONE, &mut ready)
             .expect("watched");
         assert_eq!(end, End::Stopped);
         assert!(
