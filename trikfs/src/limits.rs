@@ -106,6 +106,12 @@ pub const RETRY_MS: u64 = 20;
 pub const STUCK_MS: u32 = 2_000;
 /// Operations inside one node that may be late at the same time before others are refused.
 pub const LATE_PER_NODE_MAX: usize = 4;
+/// Milliseconds that another one waits for those to come out, while they have not been inside for as long themselves.
+pub const CROWDED_PATIENCE_MS: u32 = 20;
+/// How often it looks, beside being woken.
+pub const CROWDED_LOOK: Duration = Duration::from_millis(1);
+/// Operations that may wait so for one node: each holds a thread.
+pub const CROWDED_PER_NODE_MAX: u32 = 12;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;

@@ -249,7 +249,7 @@ impl Ready for DeviceFile {
             }
             return;
         };
-        let Ok(_inside) = self.node.quarantine.enter() else {
+        let Ok(_inside) = self.node.quarantine.enter_at_once() else {
             // Too many are inside: look again when they had time to come out.
             reader.retry_later();
             return;
