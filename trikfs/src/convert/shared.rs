@@ -194,17 +194,16 @@ impl NativeStage {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Fault>) {
-        self.convert_watched(input, output, |_, _| {})
+        self.convert_watched(input, output, |_| {})
     }
 
-    /// As [`convert_many`](Self::convert_many); `watch` hears before each tuple and after the last one how many were taken and
-    /// made so far.
+    /// As [`convert_many`](Self::convert_many); `watch` hears of each tuple that is done, and whether another one was made of it.
     #[inline]
     pub(super) fn convert_watched(
         &mut self,
         input: &[u8],
         output: &mut [u8],
-        watch: impl Fn(usize, usize),
+        mut watch: impl FnMut(bool),
     ) -> (usize, usize, Option<Fault>) {
         let (mut taken, mut made) = (0, 0);
         let mut room = output.chunks_exact_mut(self.output_size);
@@ -213,18 +212,17 @@ impl NativeStage {
             let Some(slot) = next.as_deref_mut() else {
                 break;
             };
-            watch(taken, made);
             taken += 1;
             match self.instance.convert(tuple, slot) {
                 Ok(Conversion::Produced) => {
                     made += 1;
                     next = room.next();
+                    watch(true);
                 }
-                Ok(Conversion::Consumed) => {}
+                Ok(Conversion::Consumed) => watch(false),
                 Err(fault) => return (taken, made, Some(labelled(&self.label, &fault))),
             }
         }
-        watch(taken, made);
         (taken, made, None)
     }
 

@@ -264,12 +264,12 @@ impl Inner {
         let Some(Some(stage)) = self.stages.get_mut(instance as usize) else {
             return unknown();
         };
-        let Some((input, output, progress)) = self.shared.batch(input_bytes, output_bytes) else {
+        let Some((input, output, mut progress)) = self.shared.batch(input_bytes, output_bytes)
+        else {
             return unknown();
         };
-        let (taken, made, fault) = stage.convert_watched(input, output, |taken, made| {
-            progress.tell(taken, made);
-        });
+        let (taken, made, fault) =
+            stage.convert_watched(input, output, |is_made| progress.done(is_made));
         let word = |number| u32::try_from(number).unwrap_or(u32::MAX);
         Many {
             taken: word(taken),

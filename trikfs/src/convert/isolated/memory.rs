@@ -256,7 +256,10 @@ impl Shared {
                 std::slice::from_raw_parts_mut(self.start.add(OUTPUT_AT).as_ptr(), output_bytes),
             )
         };
-        let progress = Progress(self.number(PROGRESS_AT));
+        let progress = Progress {
+            word: self.number(PROGRESS_AT),
+            counts: 0,
+        };
         Some((input, output, progress))
     }
 }
@@ -269,14 +272,19 @@ impl Drop for Shared {
 }
 
 /// How far a batch has come, for the daemon, which looks only when it waits too long or the process has died.
-pub(super) struct Progress<'a>(&'a AtomicU32);
+pub(super) struct Progress<'a> {
+    word: &'a AtomicU32,
+    /// What is in it: how many were taken, and in the lower half how many were made.
+    counts: u32,
+}
 
 impl Progress<'_> {
-    /// So many tuples were taken and made, of no more than [`ISOLATED_TUPLES`].
+    /// Another tuple was taken, and one was made of it or none. A batch has at most [`ISOLATED_TUPLES`].
     #[inline]
-    pub(super) fn tell(&self, taken: usize, made: usize) {
-        // The cast loses nothing of such numbers. A tuple is whole before it counts.
-        self.0.store((taken << 16 | made) as u32, Ordering::Release);
+    pub(super) fn done(&mut self, is_made: bool) {
+        self.counts = self.counts.wrapping_add(0x1_0000 | u32::from(is_made));
+        // A tuple is whole before it counts.
+        self.word.store(self.counts, Ordering::Release);
     }
 }
 
@@ -320,10 +328,11 @@ mod tests {
         let (daemon, file) = Shared::new().unwrap();
         let mut process = Shared::of(&file).unwrap();
         daemon.put_input(&[1, 2, 3]);
-        let (input, output, progress) = process.batch(3, ISOLATED_BYTES).unwrap();
+        let (input, output, mut progress) = process.batch(3, ISOLATED_BYTES).unwrap();
         assert_eq!(input, [1, 2, 3]);
         output[63] = 9;
-        progress.tell(ISOLATED_TUPLES, 1);
+        (1..ISOLATED_TUPLES).for_each(|_| progress.done(false));
+        progress.done(true);
         let mut taken = [0; 64];
         daemon.take_output(&mut taken);
         assert_eq!((taken[0], taken[63]), (0, 9));
