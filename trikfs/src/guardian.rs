@@ -7,18 +7,18 @@
 //!
 //! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the
 //! daemon, `watch` waits for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators;
-//! `oversight` is how the daemon sees to it that this process is not stopped; `hurry` is the priority of what must not be late.
+//! `oversight` is how the daemon sees to it that this process is not stopped; `precedence` is for what must not be late.
 
 // An end of the daemon, or a device to bring to rest, that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod actions;
 mod child;
-mod hurry;
 pub mod inherit;
 pub mod ledger;
 pub mod mounted;
 pub mod oversight;
+mod precedence;
 pub mod rest;
 mod watch;
 
@@ -28,9 +28,9 @@ use crate::mount::{self, MountOptions};
 use crate::sample_bus;
 use crate::transport::native::invalidate_message;
 use child::Child;
-use hurry::Hurry;
 use ledger::Ledger;
 use mounted::Mounted;
+use precedence::{Hurry, Reserve, Spared};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::os::fd::OwnedFd;
@@ -92,18 +92,22 @@ fn serve_once(
         }
     };
     let child = Child::start(&device, ledger, &mounted, &plan.arguments, again);
-    // The daemon has the priority that it was started with.
-    let hurry = Hurry::begin();
+    // The daemon itself has the priorities that this process was started with.
+    let precedence = (Hurry::begin(), Spared::begin());
+    let reserve = Reserve::new();
     let end = child.and_then(|mut child| {
         let last_moment = LastMoment {
-            // What fails is told by the second time.
-            rest: &|| drop(rest::bring_to_rest(&ledger.rest())),
+            rest: &|| {
+                reserve.give_back();
+                // What fails is told by the second time.
+                drop(rest::bring_to_rest(&ledger.rest()));
+            },
             cut_off: &|| mounted.abort(),
         };
         watch.until_end(&mut child, &|| mounted.is_there(), &last_moment, ready)
     });
     clean_up(ledger, &mounted, device);
-    drop(hurry);
+    drop(precedence);
     end.map_err(|error| Failure::system("daemon", error))
 }
 

@@ -228,10 +228,12 @@ pub const PANICS_KEPT: usize = 8;
 pub const PANIC_WORDS_MAX: usize = 240;
 /// Milliseconds between two looks of the daemon whether its guardian is stopped, while an actuator is driven.
 pub const GUARDIAN_LOOK_MS: u64 = 400;
-/// Time from the end of a daemon's lifeline to its end, which takes a moment; actuators run meanwhile.
+/// Time from the end of a daemon's lifeline to its end, which takes a moment; callers wait meanwhile.
 pub const REAP_PATIENCE: Duration = Duration::from_millis(5);
-/// Time that a dead daemon may still hang once its connection is cut off.
-pub const CUT_OFF_PATIENCE: Duration = Duration::from_millis(500);
+/// Time that a dead daemon may still hang once its connection is cut off. Actuators are at rest by then.
+pub const CUT_OFF_PATIENCE: Duration = Duration::from_secs(2);
+/// Bytes that the guardian gives back when the daemon has died: for the threads that bring actuators to rest and what they open.
+pub const RESERVE_BYTES: usize = 256 << 10;
 /// Pause between two looks whether it has ended.
 pub const REAP_PAUSE: Duration = Duration::from_millis(1);
 /// Milliseconds that bringing all actuators to rest may take.

@@ -7,6 +7,7 @@
 use super::inherit::Handover;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
+use super::precedence::hurry_the_end_of;
 use crate::limits::{CUT_OFF_PATIENCE, LIFE_LINE_BYTES_MAX, REAP_PATIENCE, REAP_PAUSE};
 use nix::sys::signal::{Signal, kill};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
@@ -142,6 +143,11 @@ impl Child {
         let flags = WaitPidFlag::WSTOPPED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
         let seen = waitid(Id::Pid(Pid::from_raw(pid)), flags);
         matches!(seen, Ok(WaitStatus::Stopped(..)))
+    }
+
+    /// Its threads come first, which have nothing to do but to end.
+    pub(super) fn hurry(&self) {
+        hurry_the_end_of(self.process.id());
     }
 
     /// Whether it has ended wholly, with all its threads.

@@ -5,9 +5,9 @@
 //! the daemon's business, which finds SIGTERM, SIGINT and SIGHUP blocked.
 
 use super::clean_up;
-use super::hurry::Hurry;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
+use super::precedence::Hurry;
 use crate::failure::Failure;
 use nix::sched::{CloneFlags, unshare};
 use nix::sys::prctl::set_pdeathsig;

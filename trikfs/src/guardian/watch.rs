@@ -99,6 +99,7 @@ impl Watch {
                         let asked = stop || urgency != Urgency::None;
                         if life != Life::Over && !child.is_gone() {
                             (last_moment.rest)();
+                            child.hurry();
                         }
                         let Some(status) = child.wait(last_moment.cut_off)? else {
                             return Ok(hanging(asked));
