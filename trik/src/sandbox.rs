@@ -2,7 +2,8 @@
 //! before it becomes Python.
 //!
 //! Owns the two hidden steps between a judge and such a program, which run under the name [`NAME`]: `outer` makes
-//! namespaces and waits, `inner` is the first process in them, gives up rights (`files`, `calls`) and becomes Python.
+//! namespaces and waits, `inner` is the first process in them, makes files of the computer read-only (`readonly`), gives up
+//! rights (`files`, `calls`) and becomes Python.
 //! `group` counts a program with all that it starts. `layer` has what may be missing, `words` what is told of it, `order`
 //! what the steps are told. Knows nothing of robots and of what is said to a program.
 
@@ -13,6 +14,7 @@ mod inner;
 mod layer;
 mod order;
 mod outer;
+mod readonly;
 mod words;
 
 use crate::error::Error;
@@ -20,6 +22,7 @@ use crate::limits;
 use frame::encode;
 pub(crate) use group::{delegated, sweep};
 pub(crate) use layer::Layer;
+use layer::Missing;
 pub(crate) use layer::named;
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
@@ -118,14 +121,14 @@ impl Sandbox {
         Ok(step(&order))
     }
 
-    /// Which layers are missing here for programs in these folders.
+    /// What is missing here for programs in these folders.
     ///
     /// # Errors
     /// There is no Python, or no process can be started.
     pub(crate) fn missing<'a>(
         &self,
         folders: impl Iterator<Item = &'a Path>,
-    ) -> Result<Vec<Layer>, Error> {
+    ) -> Result<Missing, Error> {
         let failed = |error| Error::system("sandbox", error);
         let mut order = self.order(Path::new("/")).map_err(failed)?;
         order.folders = folders
@@ -140,7 +143,12 @@ impl Sandbox {
             return Err(Error::system("sandbox", said.trim()));
         }
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        Ok(said.split_whitespace().filter_map(layer::find).collect())
+        let (names, place) = said.split_once('\n').unwrap_or_default();
+        let place = place.trim_end_matches('\n');
+        Ok(Missing {
+            layers: names.split_whitespace().filter_map(layer::find).collect(),
+            place: (!place.is_empty()).then(|| place.into()),
+        })
     }
 
     fn order(&self, folder: &Path) -> io::Result<Order> {
@@ -188,7 +196,9 @@ fn clear(command: &mut Command) {
 fn answer(command: &mut Command) -> io::Result<Output> {
     let until = Instant::now() + Duration::from_millis(limits::PYTHON_ANSWER_MS.into());
     let command = command.stdin(Stdio::null()).stdout(Stdio::piped());
-    let mut child = command.process_group(0).spawn()?;
+    let name = command.get_program().display().to_string();
+    let failed = |error: io::Error| io::Error::new(error.kind(), format!("{name}: {error}"));
+    let mut child = command.process_group(0).spawn().map_err(failed)?;
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let (send, said) = sync_channel(1);
     thread::spawn(move || {
@@ -218,7 +228,7 @@ fn answer(command: &mut Command) -> io::Result<Output> {
     }
     child.wait()?;
     let seconds = limits::PYTHON_ANSWER_MS / 1000;
-    let told = format!("python3 does not answer in {seconds} s");
+    let told = format!("{name} does not answer in {seconds} s");
     Err(io::Error::new(io::ErrorKind::TimedOut, told))
 }
 

@@ -51,7 +51,7 @@ fn below(root: &Path, path: &Path) -> PathBuf {
 /// Where a group is, and the top of its tree. In a container the path may be that outside; then the group is the top.
 fn mounted(mounts: &[u8], kind: &str, group: &str) -> Option<(PathBuf, PathBuf)> {
     let is_of_memory = |mount: &MountEntry| {
-        kind == "cgroup2" || mount.options.split(',').any(|one| one == "memory")
+        kind == "cgroup2" || mount.super_options.split(',').any(|one| one == "memory")
     };
     let mount = parse_mountinfo(mounts).find(|mount| mount.kind == kind && is_of_memory(mount))?;
     let inside = Path::new(group).strip_prefix(&mount.root).ok();

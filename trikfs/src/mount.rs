@@ -231,12 +231,14 @@ pub struct MountEntry {
     pub root: PathBuf,
     /// Where it is.
     pub mountpoint: PathBuf,
+    /// Its own options, for example `rw,nosuid`.
+    pub options: String,
     /// Type, for example `fuse.trikfs`.
     pub kind: String,
     /// What was mounted.
     pub source: OsString,
-    /// Options of the filesystem as a whole, separated by commas.
-    pub options: String,
+    /// Options of the filesystem as a whole, separated by commas (the super options of proc_pid_mountinfo(5)).
+    pub super_options: String,
 }
 
 /// The mounts in the text of /proc/self/mountinfo. Lines that are not understood are left out.
@@ -250,19 +252,21 @@ fn parse_line(line: &[u8]) -> Option<MountEntry> {
     let id = number(fields.next()?)?;
     let (_parent, device) = (fields.next()?, fields.next()?);
     let (root, mountpoint) = (fields.next()?, fields.next()?);
+    let options = String::from_utf8(fields.next()?.to_vec()).ok()?;
     let colon = device.iter().position(|&b| b == b':')?;
     let mut behind = fields.skip_while(|&field| field != b"-").skip(1);
     let kind = String::from_utf8(unescape(behind.next()?)).ok()?;
     let source = OsString::from_vec(unescape(behind.next()?));
-    let options = behind.next().unwrap_or_default();
+    let super_options = behind.next().unwrap_or_default();
     Some(MountEntry {
         id,
         device: (number(&device[..colon])?, number(&device[colon + 1..])?),
         root: PathBuf::from(OsString::from_vec(unescape(root))),
         mountpoint: PathBuf::from(OsString::from_vec(unescape(mountpoint))),
+        options,
         kind,
         source,
-        options: String::from_utf8_lossy(&unescape(options)).into_owned(),
+        super_options: String::from_utf8_lossy(&unescape(super_options)).into_owned(),
     })
 }
 

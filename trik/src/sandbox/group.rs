@@ -3,6 +3,7 @@
 //! Owns what is made and removed there. Limits of one process are known elsewhere; these are of a program with all that
 //! it starts. Without such a group there is none, and nobody is told: few systems give one by themselves.
 
+use crate::error::Error;
 use crate::limits;
 use std::fs;
 use std::io;
@@ -63,21 +64,30 @@ fn of(base: &Path, process: u32) -> PathBuf {
 }
 
 /// Puts this process, and what it starts, into a group of its own.
-pub(super) fn enter(base: &Path, memory: u64) -> io::Result<()> {
+pub(super) fn enter(base: &Path, memory: u64) -> Result<(), Error> {
+    let failed = |path: &Path, error: io::Error| {
+        Error::system(format_args!("control group {}", path.display()), error)
+    };
     let group = of(base, std::process::id());
     if group.exists() {
         // Process ids are used again: a judge was killed before it could remove its group.
         leave(base, std::process::id());
     }
     match fs::create_dir(&group) {
-        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+            return Err(failed(&group, error));
+        }
         _ => {}
     }
-    fs::write(group.join("memory.max"), memory.to_string())?;
+    let put = |name: &str, text: &str| {
+        let path = group.join(name);
+        fs::write(&path, text).map_err(|error| failed(&path, error))
+    };
+    put("memory.max", &memory.to_string())?;
     // Not each kernel counts swap.
-    let _ = fs::write(group.join("memory.swap.max"), "0");
-    fs::write(group.join("pids.max"), limits::GROUP_PROCESSES.to_string())?;
-    fs::write(group.join(PROCESSES), "0")
+    let _ = put("memory.swap.max", "0");
+    put("pids.max", &limits::GROUP_PROCESSES.to_string())?;
+    put(PROCESSES, "0")
 }
 
 /// Ends all in the group of a program, and removes it.
@@ -160,6 +170,13 @@ mod tests {
         assert_eq!(read(group.join(PROCESSES)), "0");
         leave(base.path(), std::process::id());
         assert_eq!(read(group.join("cgroup.kill")), "1");
+        let missing = base.path().join("missing");
+        let why = enter(&missing, 1 << 30).unwrap_err().to_string();
+        let told = format!(
+            "control group {}: ",
+            of(&missing, std::process::id()).display()
+        );
+        assert!(why.starts_with(&told), "{why}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 
 use super::layer::Layer;
 use super::order::Order;
-use super::{calls, files, outer, words};
+use super::{calls, files, outer, readonly, words};
 use crate::error::Error;
 use crate::limits;
 use nix::mount::{MsFlags, mount};
@@ -20,7 +20,7 @@ use std::fs;
 use std::io::Write;
 use std::os::fd::OwnedFd;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What is mounted over, so that nothing of it is seen.
@@ -37,12 +37,12 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     let failed = |error: nix::Error| Error::system("sandbox", error);
     // Fails only for who leads a session already, which is what is wanted.
     let _ = setsid();
-    let own = outer::open_self().map_err(failed)?;
+    let own = outer::open_self().map_err(|error| Error::system("sandbox: /proc/self", error))?;
     let mounted = match order.has(Layer::Mounts) {
         true => mount_own(&order),
         false => Mounted::default(),
     };
-    if !mounted.is_whole {
+    if order.has(Layer::Mounts) && mounted.lack.is_some() {
         order.miss(Layer::Mounts);
     }
     if order.is_dropping {
@@ -64,7 +64,13 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     }
     if order.is_probe {
         let names: Vec<_> = order.missing.iter().map(|layer| layer.name()).collect();
-        let told = writeln!(std::io::stdout(), "{}", names.join(" "));
+        let place = mounted.lack.unwrap_or_default();
+        let told = writeln!(
+            std::io::stdout(),
+            "{}\n{}",
+            names.join(" "),
+            place.display()
+        );
         return told
             .map(|()| 0)
             .map_err(|error| Error::system("sandbox", error));
@@ -73,16 +79,18 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
         return Err(Error::Refused(words::refused(&order.missing)));
     }
     let mut program = order.program.iter();
-    let mut command = Command::new(program.next().map_or("python3".as_ref(), |word| &**word));
+    let interpreter = program.next().map_or("python3".as_ref(), |word| &**word);
+    let mut command = Command::new(interpreter);
     let error = command.args(program).env("TMPDIR", SCRATCH).exec();
-    Err(Error::system("python3 cannot be started", error))
+    let what = format!("{} cannot be started", Path::new(interpreter).display());
+    Err(Error::system(what, error))
 }
 
 /// What of this process stands over the files of the computer.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Mounted {
-    /// All that should.
-    is_whole: bool,
+    /// The first place that is not as it should be.
+    lack: Option<PathBuf>,
     /// A `/proc` that shows no other process.
     pub has_proc: bool,
     /// The namespace has no numbers for more processes than a program may have.
@@ -95,8 +103,13 @@ fn mount_own(order: &Order) -> Mounted {
     let none: Option<&str> = None;
     let private = mount(none, "/", none, MsFlags::MS_REC | MsFlags::MS_PRIVATE, none);
     if private.is_err() {
-        return Mounted::default();
+        return Mounted {
+            lack: Some("/".into()),
+            ..Mounted::default()
+        };
     }
+    // All that is seen of it later is what is put over it; and by its files this process tells the kernel which user it is.
+    let still_open = readonly::shut(Path::new(PROC), order.is_dropping).err();
     let plain = MsFlags::MS_NOSUID | MsFlags::MS_NODEV | MsFlags::MS_NOEXEC;
     let shut = plain | MsFlags::MS_RDONLY;
     let put = |kind: &str, place: &str, flags, data: &str| {
@@ -121,8 +134,10 @@ fn mount_own(order: &Order) -> Mounted {
     let room = format!("size={mib}m,nr_inodes={files},mode=1777");
     let has_scratch =
         !is_taken && Path::new(SCRATCH).is_dir() && put("tmpfs", SCRATCH, plain, &room);
+    let places = [(has_proc, PROC), (is_shut, SYSTEM), (has_scratch, SCRATCH)];
+    let lack = places.into_iter().find(|(is_right, _)| !is_right);
     Mounted {
-        is_whole: has_proc && is_shut && has_scratch,
+        lack: lack.map(|(_, place)| place.into()).or(still_open),
         has_proc,
         is_counted,
         has_scratch,

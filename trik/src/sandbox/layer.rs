@@ -4,6 +4,7 @@
 //! their own get none) is no layer.
 
 use crate::error::Error;
+use std::path::PathBuf;
 
 /// A layer that may be missing.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -48,6 +49,15 @@ impl Layer {
             Self::Files => "files",
         }
     }
+}
+
+/// What a computer does not give.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Missing {
+    /// The layers that are not there, or not whole.
+    pub layers: Vec<Layer>,
+    /// Where that of mounts lacks something.
+    pub place: Option<PathBuf>,
 }
 
 /// The layer of a name.

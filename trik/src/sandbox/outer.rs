@@ -30,6 +30,8 @@ use std::process::Command;
 const NOBODY: u32 = 65534;
 /// Since which kernel processes are counted for each namespace of users.
 const COUNTS_APART: (u32, u32) = (5, 14);
+/// What this process has open.
+const OPEN: &str = "/proc/self/fd";
 /// How many namespaces of users there may be at all.
 const USERS_MOST: &str = "/proc/sys/user/max_user_namespaces";
 const NAMESPACES: [(CloneFlags, Layer); 4] = [
@@ -42,7 +44,7 @@ const NAMESPACES: [(CloneFlags, Layer); 4] = [
 /// Starts the program, and gives how it has ended.
 pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     let failed = |error: nix::Error| Error::system("sandbox", error);
-    close_others().map_err(|error| Error::system("sandbox", error))?;
+    close_others().map_err(|error| Error::system(format_args!("sandbox: {OPEN}"), error))?;
     set_pdeathsig(Signal::SIGKILL).map_err(failed)?;
     if getppid().as_raw() != order.parent {
         return Err(Error::system("sandbox", "the judge is gone"));
@@ -50,7 +52,7 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
     if let Some(base) = order.group.take() {
         // The memory of one process is that of all.
         let memory = getrlimit(Resource::RLIMIT_AS).map_err(failed)?.0;
-        group::enter(&base, memory).map_err(|error| Error::system("control group", error))?;
+        group::enter(&base, memory)?;
     }
     separate(&mut order);
     // A change of the user clears it.
@@ -60,7 +62,7 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
         .arg0(NAME)
         .args(order.write())
         .spawn()
-        .map_err(|error| Error::system("sandbox", error))?;
+        .map_err(|error| Error::system(format_args!("sandbox: {SELF}"), error))?;
     // The way to the judge is the program's alone: when that closes it, it is closed.
     if let Ok(null) = File::open("/dev/null") {
         let _ = dup2_stdin(null);
@@ -73,7 +75,7 @@ pub(super) fn run(mut order: Order) -> Result<u8, Error> {
 
 /// Closes what this process was left by what started the judge: the program has the three standard ones alone.
 fn close_others() -> io::Result<()> {
-    let open = fs::read_dir("/proc/self/fd")?;
+    let open = fs::read_dir(OPEN)?;
     let numbers: Vec<i32> = open
         .filter_map(|one| one.ok()?.file_name().to_str()?.parse().ok())
         .collect();

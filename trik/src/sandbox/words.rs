@@ -1,19 +1,24 @@
 //! What is told of layers of the sandbox that are missing, in English and Russian.
 
-use super::layer::Layer;
+use super::layer::{Layer, Missing};
 use lang_text::problem::{Locale, Words};
 
 /// A line for each missing layer: what it is, what follows, what to do.
-pub(crate) fn lacks(missing: &[Layer], is_root: bool, locale: Locale) -> Vec<String> {
-    let lines = missing.iter().map(|layer| {
+pub(crate) fn lacks(missing: &Missing, is_root: bool, locale: Locale) -> Vec<String> {
+    let lines = missing.layers.iter().map(|layer| {
         let words = lack(*layer, is_root);
+        let place = missing.place.as_ref().filter(|_| *layer == Layer::Mounts);
+        let [place, place_ru] = place.map_or_else(Default::default, |place| {
+            let place = place.display();
+            [format!(" (here: {place})"), format!(" (здесь: {place})")]
+        });
         let words = Words::new(
             format!(
-                "solutions in Python run without a layer of their sandbox: {}",
+                "solutions in Python run without a layer of their sandbox: {}{place}",
                 words.in_locale(Locale::English)
             ),
             format!(
-                "решения на Python запускаются без слоя песочницы: {}",
+                "решения на Python запускаются без слоя песочницы: {}{place_ru}",
                 words.in_locale(Locale::Russian)
             ),
         );
@@ -55,8 +60,8 @@ fn lack(layer: Layer, is_root: bool) -> Words {
             "processes: без пространства имён они видят другие процессы, а запущенное ими может ненадолго пережить их; разрешите пространства имён (в контейнере --cap-add SYS_ADMIN или профиль seccomp, пропускающий unshare)",
         ),
         Layer::Mounts => Words::new(
-            "mounts: without a namespace they see /proc and /sys of the computer and have no scratch folder; allow namespaces, and in a container a /proc without masks (--security-opt systempaths=unconfined); if namespaces are there, they lack only the scratch folder, because there is no /dev/shm or the solutions are in it",
-            "mounts: без пространства имён они видят /proc и /sys компьютера, и у них нет временной папки; разрешите пространства имён, а в контейнере /proc без масок (--security-opt systempaths=unconfined); если пространства имён есть, нет только временной папки: нет /dev/shm, или решения лежат в ней",
+            "mounts: without a namespace they see /proc and /sys of the computer, have no scratch folder, and nothing but `files` and their user keeps them from writing; allow namespaces, and in a container a /proc without masks (--security-opt systempaths=unconfined); if namespaces are there, a folder could not be made read-only, or they lack only the scratch folder, because there is no /dev/shm or the solutions are in it",
+            "mounts: без пространства имён они видят /proc и /sys компьютера, у них нет временной папки, и писать им мешают только `files` и права их пользователя; разрешите пространства имён, а в контейнере /proc без масок (--security-opt systempaths=unconfined); если пространства имён есть, какую-то папку не удалось открыть только для чтения или нет только временной папки: нет /dev/shm, или решения лежат в ней",
         ),
         Layer::Network => Words::new(
             "network: without a namespace only the filter of calls keeps them from the network; allow namespaces, or run trik where there is no network",
@@ -71,8 +76,8 @@ fn lack(layer: Layer, is_root: bool) -> Words {
             "calls: ядро не фильтрует системные вызовы, и от ptrace, монтирования и сокетов защищают только другие слои; нужен CONFIG_SECCOMP_FILTER (Linux 3.5) на x86-64 или arm64",
         ),
         Layer::Files => Words::new(
-            "files: this kernel has no Landlock, so they read and write what their user may; it needs Linux 5.13 with landlock among its modules (lsm=landlock,... at boot)",
-            "files: в ядре нет Landlock, и они читают и пишут всё, что может их пользователь; нужен Linux 5.13 с модулем landlock (lsm=landlock,... при загрузке)",
+            "files: this kernel has no Landlock, so they read what their user may, and `mounts` alone keeps them from writing it; it needs Linux 5.13 with landlock among its modules (lsm=landlock,... at boot)",
+            "files: в ядре нет Landlock, и они читают всё, что может их пользователь, а писать им мешает только `mounts`; нужен Linux 5.13 с модулем landlock (lsm=landlock,... при загрузке)",
         ),
     }
 }
@@ -80,6 +85,24 @@ fn lack(layer: Layer, is_root: bool) -> Words {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn alone(layer: Layer) -> Missing {
+        Missing {
+            layers: vec![layer],
+            place: None,
+        }
+    }
+
+    #[test]
+    fn the_place_that_is_not_as_it_should_be_is_named() {
+        let missing = Missing {
+            layers: vec![Layer::Mounts, Layer::Files],
+            place: Some("/dev/shm".into()),
+        };
+        let lines = lacks(&missing, true, Locale::English);
+        assert!(lines[0].ends_with(" (here: /dev/shm)"), "{lines:?}");
+        assert!(!lines[1].contains("/dev/shm"), "{lines:?}");
+    }
 
     #[test]
     fn each_layer_is_named_with_what_to_do() {
@@ -89,7 +112,7 @@ mod tests {
                 .into_iter()
                 .chain([(Layer::User, false)])
             {
-                let lines = lacks(&[layer], is_root, locale);
+                let lines = lacks(&alone(layer), is_root, locale);
                 let start = format!(": {}: ", layer.name());
                 assert!(
                     lines[0].contains(&start) && lines[0].contains("; "),
@@ -98,8 +121,8 @@ mod tests {
             }
         }
         assert_ne!(
-            lacks(&[Layer::User], true, Locale::English),
-            lacks(&[Layer::User], false, Locale::English)
+            lacks(&alone(Layer::User), true, Locale::English),
+            lacks(&alone(Layer::User), false, Locale::English)
         );
         assert!(refused(&[Layer::Files, Layer::User]).ends_with("files, user"));
     }

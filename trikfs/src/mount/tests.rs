@@ -66,9 +66,10 @@ fn the_mount_table_is_read_with_its_escapes() {
         device: (0, 50),
         root: "/".into(),
         mountpoint: "/mnt/my robot".into(),
+        options: "rw,nosuid,nodev".into(),
         kind: "fuse.trikfs".into(),
         source: "tr\\ik".into(),
-        options: "rw,user_id=0".to_owned(),
+        super_options: "rw,user_id=0".to_owned(),
     };
     assert_eq!(entries[1], expected);
     assert_eq!(

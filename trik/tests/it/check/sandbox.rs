@@ -1,5 +1,7 @@
 //! Solutions in Python that want more than to drive a robot: their judge, the computer, all of its memory.
 
+mod readonly;
+
 use super::{drive, world};
 use crate::rig::TRIK;
 use harness::{Board, Output, tools};
