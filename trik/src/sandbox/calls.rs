@@ -135,6 +135,18 @@ const NAMESPACES: [i32; 7] = [
     libc::CLONE_NEWPID,
     libc::CLONE_NEWNET,
 ];
+/// Requests of ioctl that fail alike: what a file is besides its bytes (linux/fs.h), which Landlock does not know and a file
+/// in memory has too, and what types into the terminal of somebody (linux/tty.h, older than Linux 6.2).
+const REQUESTS: [u32; 5] = [
+    // FS_IOC_SETFLAGS, and for programs of 32 bits.
+    0x4008_6602,
+    0x4004_6602,
+    // FS_IOC_FSSETXATTR.
+    0x401c_5820,
+    // TIOCSTI, TIOCLINUX.
+    0x5412,
+    0x541c,
+];
 /// Which bits of the kind of a socket say what it is (linux/net.h).
 const KINDS: u64 = 0xf;
 /// Numbers from here on are calls of another kind of program on the same processor (x32), with lists of their own.
@@ -219,6 +231,12 @@ fn rules(is_alone: bool) -> Result<BTreeMap<i64, Vec<SeccompRule>>, BackendError
         pairs.push(when(1, SeccompCmpOp::MaskedEq(KINDS), kind)?);
     }
     rules.insert(libc::SYS_socketpair, pairs);
+    let mut requests = Vec::new();
+    for request in REQUESTS {
+        // The kernel takes 32 bits of it.
+        requests.push(when(1, SeccompCmpOp::Eq, request.into())?);
+    }
+    rules.insert(libc::SYS_ioctl, requests);
     // A program that dies with the judge must not change that.
     let death = u64::from(libc::PR_SET_PDEATHSIG.cast_unsigned());
     rules.insert(libc::SYS_prctl, vec![when(0, SeccompCmpOp::Eq, death)?]);
@@ -272,7 +290,12 @@ mod tests {
             // Without a condition: always.
             assert!(whole.get(&call).is_some_and(Vec::is_empty), "{call}");
         }
-        for call in [libc::SYS_clone, libc::SYS_socketpair, libc::SYS_prctl] {
+        for call in [
+            libc::SYS_clone,
+            libc::SYS_socketpair,
+            libc::SYS_ioctl,
+            libc::SYS_prctl,
+        ] {
             assert!(!whole[&call].is_empty(), "{call}");
         }
         #[cfg(target_arch = "x86_64")]
