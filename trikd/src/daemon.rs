@@ -31,8 +31,8 @@ use crate::server::variables::Variables;
 use crate::server::video::Video;
 use crate::server::{self, Admission, Port};
 use crate::settings::{BoxKey, Service, Settings, StopKey};
-use crate::status::Status;
-use crate::{heartbeat, keys, standstill, status};
+use crate::status::{self, Socket, Status};
+use crate::{heartbeat, keys, standstill};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid, getppid};
 use page::seats::Seats;
@@ -44,7 +44,6 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tokio::net::UnixListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::{LocalSet, spawn_local};
@@ -378,9 +377,9 @@ impl Parts {
     }
 
     /// Begins to answer requests for the status, and to look after the guardian.
-    fn look_after(&self, ports: String, listener: UnixListener) {
-        let (status, listener) = (Rc::new(self.status(ports)), Rc::new(listener));
-        let answer = move || status::serve(status.clone(), listener.clone());
+    fn look_after(&self, ports: String, socket: Socket) {
+        let (status, socket) = (Rc::new(self.status(ports)), Rc::new(socket));
+        let answer = move || status::serve(status.clone(), socket.clone());
         spawn_local(panics::again("status", answer));
         let (guardian, programs) = (getppid(), self.programs.clone());
         let look = move || standstill::look(guardian, programs.clone());
@@ -425,7 +424,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     let unusable = |path: &Path, error| unusable(path, error, "--run");
     program::child::install(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     program::python::install(&python).map_err(|error| unusable(&python, error))?;
-    let listener = status::listen(&settings.run).map_err(|error| unusable(&settings.run, error))?;
+    let socket = Socket::make(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     let owner = owner(&settings)?;
     // A process that loses its parent becomes a child of this process, and cannot outlive its program.
     program::kill::adopt_orphans()?;
@@ -458,7 +457,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
         Ok(()) => parts.warn_of_rights(),
     }
     parts.open(ports);
-    parts.look_after(words.clone(), listener);
+    parts.look_after(words.clone(), socket);
     spawn_local(parts.keys().hear(pressed));
     if !parts.settings.no_autorun {
         spawn_local(boot::autorun(parts.autorun(), restarts));

@@ -220,6 +220,8 @@ pub const SEND_BUFFER_BYTES: usize = 64 << 10;
 pub const GUARDIAN_END_MS: u64 = 8_000;
 /// Milliseconds between two beats of the serving thread.
 pub const BEAT_MS: u64 = 500;
+/// Milliseconds between two looks whether the socket of the status has been removed.
+pub const SOCKET_LOOK_MS: u64 = 1_000;
 /// Milliseconds between two looks whether the guardian stands still.
 pub const GUARDIAN_LOOK_MS: u64 = 500;
 /// Looks in a row at which a process of a program stood still before the program is ended: one look may see a process that goes

@@ -5,12 +5,13 @@
 use crate::access::Access;
 use crate::blame::Os;
 use crate::clients::Clients;
-use crate::limits;
 use crate::panics::Panics;
 use crate::program::Programs;
 use crate::program::child::Owner;
 use crate::server::mailbox::Mailbox;
+use crate::{limits, log};
 use page::seats::Seats;
+use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::net::IpAddr;
@@ -21,19 +22,64 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
-use tokio::time::timeout;
+use tokio::time::{MissedTickBehavior, interval, timeout};
 
 const NAME: &str = "status.sock";
 
-/// The socket in the directory `run`; what an earlier trikd left is replaced.
-///
-/// # Errors
-/// Those of the file system.
-pub fn listen(run: &Path) -> io::Result<UnixListener> {
+/// The socket in a directory.
+#[derive(Debug)]
+pub struct Socket {
+    run: PathBuf,
+    listener: RefCell<Rc<UnixListener>>,
+    /// Somebody has been told why there is none.
+    is_told: Cell<bool>,
+}
+
+impl Socket {
+    /// What an earlier trikd left is replaced.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn make(run: &Path) -> io::Result<Self> {
+        Ok(Self {
+            run: run.to_owned(),
+            listener: RefCell::new(Rc::new(listen(run)?)),
+            is_told: Cell::default(),
+        })
+    }
+
+    /// Makes it again if somebody has removed it, as cleaners of temporary files do. One of another trikd stays.
+    fn restore(&self) {
+        let found = self.run.join(NAME).symlink_metadata();
+        let gone = [io::ErrorKind::NotFound, io::ErrorKind::NotADirectory];
+        if !found.is_err_and(|error| gone.contains(&error.kind())) {
+            return;
+        }
+        match std::fs::create_dir_all(&self.run).and_then(|()| listen(&self.run)) {
+            Ok(listener) => {
+                *self.listener.borrow_mut() = Rc::new(listener);
+                self.is_told.set(false);
+            }
+            Err(error) if !self.is_told.replace(true) => tracing::warn!(
+                target: log::DAEMON,
+                "{}: `trikd status` has no answer, since this was removed: {error}",
+                self.run.join(NAME).display()
+            ),
+            // The next look tries again.
+            Err(_) => {}
+        }
+    }
+}
+
+fn listen(run: &Path) -> io::Result<UnixListener> {
     let path = run.join(NAME);
     let _ = std::fs::remove_file(&path);
     let listener = UnixListener::bind(&path)?;
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600))?;
+    if let Err(error) = std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600)) {
+        // One that is there is not made again.
+        let _ = std::fs::remove_file(&path);
+        return Err(error);
+    }
     Ok(listener)
 }
 
@@ -97,9 +143,19 @@ impl Status {
 }
 
 /// Answers for ever.
-pub async fn serve(status: Rc<Status>, listener: Rc<UnixListener>) {
+pub async fn serve(status: Rc<Status>, socket: Rc<Socket>) {
+    let mut looks = interval(Duration::from_millis(limits::SOCKET_LOOK_MS));
+    looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
-        match listener.accept().await {
+        let listener = socket.listener.borrow().clone();
+        let came = tokio::select! {
+            came = listener.accept() => came,
+            _ = looks.tick() => {
+                socket.restore();
+                continue;
+            }
+        };
+        match came {
             Ok((stream, _)) => {
                 let wait = Duration::from_millis(limits::FAREWELL_MS);
                 let _ = timeout(wait, answer(&status, stream)).await;
@@ -172,5 +228,38 @@ pub fn ask(run: &Path, words: &str) -> Result<String, Unanswered> {
     match text.strip_prefix("refused: ") {
         Some(why) => Err(Unanswered::Refused(why.trim().to_owned())),
         None => Ok(text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::MetadataExt;
+
+    #[test]
+    fn what_was_removed_is_made_again_and_what_another_trikd_has_put_there_stays() {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_io()
+            .build()
+            .unwrap();
+        let _inside = runtime.enter();
+        let folder = tempfile::tempdir().unwrap();
+        let run = folder.path().join("run");
+        std::fs::create_dir(&run).unwrap();
+        let socket = Socket::make(&run).unwrap();
+        let path = run.join(NAME);
+        let number = || std::fs::metadata(&path).unwrap().ino();
+        std::fs::remove_file(&path).unwrap();
+        let other = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        let of_other = number();
+        socket.restore();
+        assert_eq!(number(), of_other);
+        drop(other);
+        std::fs::remove_dir_all(&run).unwrap();
+        socket.restore();
+        let mine = number();
+        socket.restore();
+        assert_eq!(number(), mine);
+        assert!(std::os::unix::net::UnixStream::connect(&path).is_ok());
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::rig::{Client, Robot, robot};
 use harness::{eventually, processes};
+use std::os::unix::fs::PermissionsExt;
 use std::time::Instant;
 
 /// Uploads and runs a program, and waits for the message that it has started.
@@ -549,4 +550,25 @@ fn what_programs_need_is_made_again_where_somebody_has_removed_it() {
         "import os\nprint(brick.sensor(A1).read(), os.path.exists(os.environ['TRIKD']))",
     );
     client.expect("print: 27 True\n");
+}
+
+#[test]
+fn the_status_answers_again_where_somebody_has_removed_its_socket() {
+    let robot = robot(&[]);
+    let run = robot.home.path("run");
+    for _ in 0..2 {
+        std::fs::remove_dir_all(&run).unwrap();
+        eventually("a status", || robot.status().starts_with("trikd "));
+        let mode = std::fs::metadata(run.join("status.sock"))
+            .unwrap()
+            .permissions();
+        assert_eq!(mode.mode() & 0o777, 0o600);
+    }
+    // Nothing can be made there, which is told once.
+    std::fs::remove_dir_all(&run).unwrap();
+    std::fs::write(&run, "").unwrap();
+    robot.expect_log("status.sock: `trikd status` has no answer, since this was removed: ");
+    std::fs::remove_file(&run).unwrap();
+    eventually("a status", || robot.status().starts_with("trikd "));
+    assert_eq!(robot.log().matches("since this was removed").count(), 1);
 }
