@@ -4,6 +4,7 @@
 
 use crate::limits;
 use crate::seats::{Room, Seat, Seats, Whom};
+use crate::shared::Guests;
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
 use std::io;
@@ -27,7 +28,7 @@ impl Connected<IncomingStream<'_, Door>> for Peer {
 }
 
 /// How many connections there may be.
-const ROOM: Room = Room {
+pub const ROOM: Room = Room {
     all: limits::CONNECTIONS_MAX,
     one: limits::CONNECTIONS_OF_ONE_MAX,
     kept: limits::CONNECTIONS_KEPT,
@@ -40,14 +41,16 @@ const ROOM: Room = Room {
 pub struct Door {
     listener: TcpListener,
     seats: Arc<Seats>,
+    guests: Arc<dyn Guests>,
 }
 
 impl Door {
-    /// At this listener.
-    pub fn new(listener: TcpListener) -> Self {
+    /// At this listener, with places that may be taken already.
+    pub fn new(listener: TcpListener, seats: Arc<Seats>, guests: Arc<dyn Guests>) -> Self {
         Self {
             listener,
-            seats: Seats::new(ROOM),
+            seats,
+            guests,
         }
     }
 }
@@ -62,6 +65,7 @@ impl Listener for Door {
                 // One that has no place is closed at once.
                 Ok((stream, address)) => {
                     let ip = address.ip().to_canonical();
+                    self.guests.comes(ip);
                     let whom = match ip.is_loopback() {
                         true => Whom::Own,
                         false => Whom::Anybody,

@@ -59,6 +59,8 @@ pub const PING_TIME: Duration = Duration::from_secs(1);
 pub const SILENCE_TIME: Duration = Duration::from_secs(4);
 /// The control port of a robot is told so often that somebody is there.
 pub const KEEPALIVE_TIME: Duration = Duration::from_secs(2);
+/// Between a panic of the thread that serves and its next beginning: one that fails at once must not take the processor.
+pub const AGAIN_TIME: Duration = Duration::from_millis(100);
 /// Until a robot that is not there is looked for again.
 pub const RETURN_TIME: Duration = Duration::from_secs(1);
 /// How often the world is shown, in the best case.

@@ -1,15 +1,18 @@
 //! The thread that serves the page, and what it is told.
 //!
-//! Owns the thread and its end. It has a runtime of its own, which does nothing while no browser looks.
+//! Owns the thread, its end, and that it begins again after a panic. It has a runtime of its own, which does nothing while no
+//! browser looks.
 
 use crate::control::Control;
-use crate::door::{Door, Peer};
+use crate::door::{Door, Peer, ROOM};
 use crate::error::Error;
 use crate::limits;
 use crate::route;
+use crate::seats::Seats;
 use crate::shared::{Settings, Shared};
 use std::io;
 use std::net::{SocketAddr, TcpListener};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use std::thread::JoinHandle;
@@ -55,22 +58,23 @@ impl Page {
             large: Arc::new(Semaphore::new(limits::LARGE_MAX)),
             number: AtomicUsize::new(0),
         });
-        let (end, ended) = oneshot::channel();
-        let work = async move {
-            let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
-                return;
-            };
-            let door = Door::new(listener);
-            let service = route::router(shared).into_make_service_with_connect_info::<Peer>();
-            tokio::select! {
-                _ = axum::serve(door, service) => {}
-                _ = ended => {}
-            }
-        };
+        let (end, mut ended) = oneshot::channel();
+        let seats = Seats::new(ROOM);
         let thread = std::thread::Builder::new()
             .name("page".to_owned())
             .spawn(move || {
-                runtime.block_on(work);
+                let mut serves = || {
+                    runtime.block_on(async {
+                        tokio::select! {
+                            _ = serve(&listener, &seats, &shared) => {}
+                            _ = &mut ended => {}
+                        }
+                    });
+                };
+                // Connections are tasks of the runtime: they go on, and what a browser drives comes to rest when it leaves.
+                while catch_unwind(AssertUnwindSafe(&mut serves)).is_err() {
+                    runtime.block_on(async { tokio::time::sleep(limits::AGAIN_TIME).await });
+                }
                 // A write to a device may hang, and the end must not.
                 runtime.shutdown_timeout(limits::PING_TIME);
             })
@@ -105,6 +109,14 @@ impl Drop for Page {
             let _ = thread.join();
         }
     }
+}
+
+/// Accepts connections until none can come.
+async fn serve(listener: &TcpListener, seats: &Arc<Seats>, shared: &Arc<Shared>) -> io::Result<()> {
+    let listener = tokio::net::TcpListener::from_std(listener.try_clone()?)?;
+    let door = Door::new(listener, seats.clone(), shared.settings.guests.clone());
+    let service = route::router(shared.clone()).into_make_service_with_connect_info::<Peer>();
+    axum::serve(door, service).await
 }
 
 /// The name of this machine; empty if it has none.

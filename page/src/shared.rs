@@ -13,6 +13,9 @@ use tokio::sync::{Semaphore, watch};
 
 /// Which computers may do what.
 pub trait Guests: Send + Sync {
+    /// It connects; what it may is asked later.
+    fn comes(&self, _: IpAddr) {}
+
     /// It may look.
     fn may_look(&self, ip: IpAddr) -> bool;
 

@@ -6,6 +6,8 @@ use crate::shared::Guests;
 use std::fs;
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, TcpStream};
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
 /// A page over a tree of files, and the listener of its robot.
@@ -13,15 +15,22 @@ struct Scene {
     page: Page,
     robot: TcpListener,
     home: tempfile::TempDir,
+    fails: Arc<AtomicBool>,
 }
 
 /// Which computers may do what: those of this machine, as the test says.
 struct ByWord {
     look: bool,
     drive: bool,
+    /// A connection meets a mistake of ours.
+    fails: Arc<AtomicBool>,
 }
 
 impl Guests for ByWord {
+    fn comes(&self, _: IpAddr) {
+        assert!(!self.fails.load(Relaxed), "a test wants that");
+    }
+
     fn may_look(&self, _: IpAddr) -> bool {
         self.look
     }
@@ -55,6 +64,12 @@ fn scene_with(look: bool, drive: bool, configures: bool) -> Scene {
     fs::write(home.path().join("tree/status"), "config ok: 0 nodes\n").unwrap();
     fs::write(home.path().join("programs/a.js"), "print(1)").unwrap();
     let robot = TcpListener::bind("127.0.0.1:0").unwrap();
+    let fails = Arc::<AtomicBool>::default();
+    let guests = ByWord {
+        look,
+        drive,
+        fails: fails.clone(),
+    };
     let page = Page::start(Settings {
         address: "127.0.0.1:0".parse().unwrap(),
         name: "test".to_owned(),
@@ -63,11 +78,16 @@ fn scene_with(look: bool, drive: bool, configures: bool) -> Scene {
         world: None,
         playback: None,
         configures,
-        guests: Arc::new(ByWord { look, drive }),
+        guests: Arc::new(guests),
     })
     .unwrap();
     page.robot_is_at(robot.local_addr().unwrap());
-    Scene { page, robot, home }
+    Scene {
+        page,
+        robot,
+        home,
+        fails,
+    }
 }
 
 impl Scene {
@@ -315,6 +335,31 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     };
     assert_eq!((kind, first.as_str()), (2, "one"));
     browser.until("stream:");
+    drop(browser);
+    if has_rest {
+        eventually("rest after the browser", || scene.motor() == "0\n");
+    }
+}
+
+#[test]
+fn after_a_panic_the_page_is_served_again_and_who_was_there_stays() {
+    let scene = scene(true, true);
+    let has_rest = scene.gives_rest();
+    let (mut browser, _robot) = scene.browser();
+    browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
+    browser.until("\"is\":\"written\"");
+    scene.fails.store(true, Relaxed);
+    for _ in 0..2 {
+        // Nobody answers; the connection is cut.
+        let mut stream = scene.connect();
+        let _ = stream.write_all(b"GET /plain HTTP/1.1\r\n\r\n");
+        assert!(matches!(stream.read(&mut [0; 64]), Ok(0) | Err(_)));
+    }
+    scene.fails.store(false, Relaxed);
+    let answer = scene.get("/plain", &scene.host(), "");
+    assert!(answer.starts_with("HTTP/1.1 200 "), "{answer}");
+    browser.order(r#"{"do":"write","path":"motors/M1","value":"40"}"#);
+    browser.until("\"value\":\"40\"");
     drop(browser);
     if has_rest {
         eventually("rest after the browser", || scene.motor() == "0\n");

@@ -5,23 +5,35 @@
 use crate::access::Access;
 use crate::blame::Os;
 use crate::error::Error;
+use crate::panics;
 use crate::protocol::mail::plain;
 use crate::settings::Settings;
 use page::{Guests, Page};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-impl Guests for Access {
+/// Who comes to the page of a robot.
+struct Visitors {
+    access: Arc<Access>,
+    tree: PathBuf,
+}
+
+impl Guests for Visitors {
+    fn comes(&self, _: IpAddr) {
+        panics::seam("page", || self.tree.join("panic").exists());
+    }
+
     fn may_look(&self, ip: IpAddr) -> bool {
-        self.lists(plain(ip))
+        self.access.lists(plain(ip))
     }
 
     fn may_drive(&self, ip: IpAddr) -> bool {
-        self.is_paired(ip)
+        self.access.is_paired(ip)
     }
 
     fn asks(&self, ip: IpAddr) {
-        self.remember(ip);
+        self.access.remember(ip);
     }
 }
 
@@ -37,6 +49,10 @@ pub fn start(
     let Some(port) = settings.page_port else {
         return Ok(None);
     };
+    let guests = Arc::new(Visitors {
+        access: access.clone(),
+        tree: settings.tree.clone(),
+    });
     let own = settings.address.first();
     let serve = |ip: IpAddr| {
         Page::start(page::Settings {
@@ -47,7 +63,7 @@ pub fn start(
             world: None,
             playback: None,
             configures: settings.page_configures,
-            guests: access.clone(),
+            guests: guests.clone(),
         })
     };
     let page = match (

@@ -3,9 +3,11 @@
 use crate::rig::{BUILT, Robot, small_tree, trikd};
 use harness::wait::note_skip;
 use harness::{eventually, processes};
+use std::io::{Read, Write};
+use std::net::TcpStream;
 
 /// A robot whose parts fail when a test wants it; None for a build that cannot.
-fn fragile() -> Option<Robot> {
+fn fragile(words: &[&str]) -> Option<Robot> {
     if trikd() != BUILT || !cfg!(debug_assertions) {
         note_skip("a build without assertions has no way to fail");
         return None;
@@ -15,14 +17,14 @@ fn fragile() -> Option<Robot> {
     Some(Robot::start_with(
         home,
         tree,
-        &[],
-        &[("TRIKD_PANIC", "control,rest")],
+        words,
+        &[("TRIKD_PANIC", "control,rest,page")],
     ))
 }
 
 #[test]
 fn a_task_that_fails_ends_alone_and_is_counted() {
-    let Some(robot) = fragile() else { return };
+    let Some(robot) = fragile(&[]) else { return };
     let daemon = robot.daemon();
     let mut other = robot.client("control");
     other.sync();
@@ -50,7 +52,7 @@ fn a_task_that_fails_ends_alone_and_is_counted() {
 
 #[test]
 fn the_thread_that_brings_motors_to_rest_begins_again() {
-    let Some(robot) = fragile() else { return };
+    let Some(robot) = fragile(&[]) else { return };
     let daemon = robot.daemon();
     let fails = robot.home.file("tree/panic", "");
     let mut client = robot.client("control");
@@ -69,5 +71,37 @@ fn the_thread_that_brings_motors_to_rest_begins_again() {
     client.until("status: ");
     assert!(robot.has_rested());
     assert_eq!(processes::threads_named(daemon, "rest"), 1);
+    assert_eq!(robot.daemon(), daemon);
+}
+
+#[test]
+fn the_thread_that_serves_the_page_begins_again() {
+    let Some(robot) = fragile(&["--page-port", "0"]) else {
+        return;
+    };
+    let daemon = robot.daemon();
+    let port = robot.port("page");
+    let ask = || {
+        let mut stream = TcpStream::connect(("127.0.0.1", port)).expect("a connection");
+        let request = format!("GET /plain HTTP/1.0\r\nHost: 127.0.0.1:{port}\r\n\r\n");
+        // It may be cut already.
+        let _ = stream.write_all(request.as_bytes());
+        let mut answer = String::new();
+        let _ = stream.read_to_string(&mut answer);
+        answer
+    };
+    assert!(ask().starts_with("HTTP/1.0 200 "));
+    let fails = robot.home.file("tree/panic", "");
+    assert_eq!(ask(), "");
+    assert!(
+        robot.status().contains("\npanics 1 caught\n"),
+        "{}",
+        robot.status()
+    );
+    robot.expect_log("panic in the thread 'page' at ");
+    std::fs::remove_file(fails).expect("a file");
+    let answer = ask();
+    assert!(answer.starts_with("HTTP/1.0 200 "), "{answer}");
+    assert_eq!(processes::threads_named(daemon, "page"), 1);
     assert_eq!(robot.daemon(), daemon);
 }
