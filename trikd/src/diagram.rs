@@ -20,6 +20,7 @@ mod watch;
 use crate::brick::Brick;
 use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
 use crate::host::{Host, Incoming};
+use crate::scripts::ending;
 use crate::{limits, settings};
 use debugging::Debugging;
 use lang_dataflow::project::Project as Flow;
@@ -112,10 +113,7 @@ impl Diagram {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
         let bytes = read_save(path).map_err(failed)?;
-        if path
-            .extension()
-            .is_some_and(|ending| ending == flow::ENDING)
-        {
+        if ending(path) == flow::ENDING {
             let project = flow::of_text(bytes, self.locale).map_err(failed)?;
             return self.ready((&project, &[]), host).map_err(failed);
         }

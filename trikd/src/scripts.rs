@@ -4,6 +4,7 @@
 
 use crate::blame::{Blame, Os};
 use crate::limits;
+use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, Write};
@@ -239,6 +240,12 @@ fn enter(folder: &Path, parent: &Path) -> io::Result<Option<File>> {
     Ok(Some(place))
 }
 
+/// The ending of a name in small letters, which says what the program is written in; empty if there is none.
+pub fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(OsStr::to_str);
+    ending.unwrap_or_default().to_ascii_lowercase()
+}
+
 /// Whether content says by itself that it can be executed.
 pub fn is_executable(content: &[u8]) -> bool {
     content.starts_with(b"\x7fELF") || content.starts_with(b"#!")
@@ -294,6 +301,12 @@ mod tests {
     use super::*;
     use harness::put;
     use tempfile::tempdir;
+
+    #[test]
+    fn an_ending_is_the_same_in_capital_letters() {
+        let given = ["a.FLOW", "b/A.Qrs", "a", ".js"].map(|name| ending(Path::new(name)));
+        assert_eq!(given, ["flow", "qrs", "", ""]);
+    }
 
     #[test]
     fn names_that_lead_elsewhere_are_refused_with_a_reason() {

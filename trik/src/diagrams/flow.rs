@@ -35,7 +35,8 @@ pub(crate) enum Program {
 
 /// Whether a file is a data-flow program in its textual form, by its name.
 pub(crate) fn is_text(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == ENDING)
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case(ENDING))
 }
 
 /// Reads a save or a text.

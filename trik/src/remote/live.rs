@@ -117,9 +117,11 @@ impl Watched {
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
     pub(super) fn new(path: &Path, gone: WhenGone) -> Result<Self, Error> {
-        let is_diagram = path
-            .extension()
-            .is_some_and(|ending| ending == "qrs" || ending == flow::ENDING);
+        let is_diagram = path.extension().is_some_and(|ending| {
+            ["qrs", flow::ENDING]
+                .iter()
+                .any(|one| ending.eq_ignore_ascii_case(one))
+        });
         if !is_diagram {
             let why = "--watch is for diagrams (NAME.qrs, NAME.flow): other programs cannot be changed while they run";
             return Err(Error::file(path, why.to_owned()));
@@ -195,6 +197,7 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
+        assert!(Watched::new(Path::new("A.FLOW"), WhenGone::End).is_ok());
         let other = Watched::new(Path::new("a.py"), WhenGone::End).unwrap_err();
         assert!(
             other.to_string().contains("--watch is for diagrams"),

@@ -13,6 +13,7 @@ use crate::host::{Host, Incoming};
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::ALL;
+use crate::scripts::ending;
 use lang_dataflow::debug::Desk;
 use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::patch::{Refused, Version};
@@ -239,7 +240,7 @@ impl Flow {
 /// The data-flow program in a file: a text or a save.
 fn project_in(path: &Path, locale: Locale) -> Result<Project, NoDiagram> {
     let bytes = read_save(path)?;
-    if path.extension().is_some_and(|ending| ending == ENDING) {
+    if ending(path) == ENDING {
         return of_text(bytes, locale);
     }
     let opened = opened(&bytes, locale)?;

@@ -7,6 +7,7 @@ use super::python;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
 use crate::protocol::program::ToProgram;
+use crate::scripts;
 use crate::settings::Settings;
 use frame::{Decoder, encode};
 use nix::unistd::{Pid, User};
@@ -41,14 +42,14 @@ pub enum Language {
 impl Language {
     /// The language of a file: by its ending, else by its first bytes, else JavaScript as on the original robots.
     pub fn of(path: &Path) -> Self {
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some("py") => Self::Python,
-            Some("js" | "qts") => Self::JavaScript,
-            Some("qrs" | "flow") => Self::Diagram,
+        match scripts::ending(path).as_str() {
+            "py" => Self::Python,
+            "js" | "qts" => Self::JavaScript,
+            "qrs" | "flow" => Self::Diagram,
             // One that names its interpreter runs on that.
-            Some("lua") if !begins_as_executable(path) => Self::Lua,
-            Some(_) | None if begins_as_executable(path) => Self::Native,
-            Some(_) | None => Self::JavaScript,
+            "lua" if !begins_as_executable(path) => Self::Lua,
+            _ if begins_as_executable(path) => Self::Native,
+            _ => Self::JavaScript,
         }
     }
 
@@ -67,7 +68,7 @@ impl Language {
 fn begins_as_executable(path: &Path) -> bool {
     let mut first = [0; 4];
     let read = std::fs::File::open(path).and_then(|mut file| io::Read::read(&mut file, &mut first));
-    read.is_ok_and(|size| crate::scripts::is_executable(&first[..size]))
+    read.is_ok_and(|size| scripts::is_executable(&first[..size]))
 }
 
 /// Interpreters of Lua, the first that is there counts.

@@ -57,6 +57,24 @@ fn a_diagram_drives_prints_and_is_stopped_like_any_program() {
 }
 
 #[test]
+fn an_ending_in_capital_letters_says_the_same() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "COUNT.QRS", &counting());
+    client.send("run:COUNT.QRS");
+    client.expect("info: COUNT.QRS has started");
+    client.expect("print: 1\n");
+    client.send("stop");
+    client.until("info: COUNT.QRS was stopped by a client");
+    // A block that reacts to nothing is at its end at once.
+    let text = b"diagram \"First\"\n  say: Say(text = hello)\n";
+    upload(&mut client, "FIRST.FLOW", text);
+    client.send("run:FIRST.FLOW");
+    client.expect("info: FIRST.FLOW has started");
+    client.until("info: FIRST.FLOW has ended");
+}
+
+#[test]
 fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
     let robot = robot(&[]);
     let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
