@@ -80,6 +80,12 @@ pub trait Device: Send + Sync {
     /// Why it is refused.
     fn store(&self, attribute: &str, text: &str) -> Result<(), Error>;
 
+    /// Brings to rest what it drives, because nobody could do so after this process; whether it drove something. A program
+    /// may drive it again.
+    fn rest(&self, _why: &str) -> bool {
+        false
+    }
+
     /// What is notified when this attribute changes; none if it never notifies.
     fn changes(&self, _attribute: &str) -> Option<&Arc<Changes>> {
         None

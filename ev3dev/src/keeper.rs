@@ -2,7 +2,8 @@
 //!
 //! The keeper mounts, starts the serving process and waits for a signal, an unmount or its end; then it unmounts, so that a
 //! kill of the serving process leaves no dead mount. If the keeper is killed, the kernel tells the serving process, which
-//! unmounts by itself. A serving process that somebody stops (SIGSTOP) and does not soon continue is killed. The serving
+//! unmounts by itself. A serving process that somebody stops (SIGSTOP) and does not soon continue is killed. While the keeper
+//! is stopped nobody would notice that, so the serving process looks at it, brings to rest what it drives, and has it go on. The serving
 //! process ends with its files of the tree open: the tree then brings to rest what it drove. So nothing has to be done for the motors here, whatever ends the view.
 
 use crate::cli::SERVE;
@@ -31,6 +32,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use trikfs::guardian::mounted::Mounted;
 use trikfs::mount::{self, MountOptions};
+use trikfs::process::is_stopped;
 use trikfs::transport::{Operations, native};
 
 /// First column of /proc/mounts.
@@ -332,6 +334,7 @@ pub fn serve(
         .try_clone_to_owned()
         .map_err(Failure::Serving)?;
     let view = Arc::new(View::new(Tree::new(tree.to_owned()), options));
+    watch_keeper(handover.keeper, &view).map_err(Failure::Serving)?;
     let devices = view.devices();
     // Nobody may listen any more; the view can be used all the same.
     let mut out = io::stdout();
@@ -339,6 +342,31 @@ pub fn serve(
     // The view outlives its mount: dropped, it would close its files of the tree, and what it drives would go on.
     native::serve(device, Arc::clone(&view) as Arc<dyn Operations>).map_err(Failure::Serving)?;
     std::process::exit(0)
+}
+
+/// Looks at the keeper for ever: the kernel tells nobody that a parent was stopped.
+fn watch_keeper(keeper: u32, view: &Arc<View>) -> io::Result<()> {
+    let view = Arc::clone(view);
+    let look = move || {
+        loop {
+            thread::sleep(Duration::from_millis(limits::KEEPER_LOOK_MS));
+            if !is_stopped(keeper) {
+                continue;
+            }
+            let why = format!("the process that keeps the mount ({keeper}) was stopped");
+            let rested = match view.rest(&why) {
+                true => "motors were brought to rest, and ",
+                false => "",
+            };
+            complain(&format!("{why}: {rested}it was told to go on"));
+            if let Ok(keeper) = i32::try_from(keeper) {
+                // One that has ended is told of by the kernel.
+                let _ = kill(Pid::from_raw(keeper), Signal::SIGCONT);
+            }
+        }
+    };
+    let thread = thread::Builder::new().name("oversight".to_owned());
+    thread.spawn(look).map(|_| ())
 }
 
 fn complain(text: &str) {

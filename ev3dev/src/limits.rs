@@ -28,5 +28,7 @@ pub const DC_RAMP_MS_MAX: i32 = 10_000;
 pub const LINE_BYTES_MAX: usize = 64;
 /// How long the serving process may be stopped (SIGSTOP) before it is ended: nobody holds the motors that it drives.
 pub const STOPPED_MS: u64 = 500;
+/// How often the serving process looks whether the keeper stands still (SIGSTOP): nobody would clean up after this process.
+pub const KEEPER_LOOK_MS: u64 = 400;
 /// Time for the serving process to end after it was asked to, before it is forced.
 pub const GRACE_MS: u64 = 2_000;

@@ -292,6 +292,10 @@ impl Device for Motor {
         }
     }
 
+    fn rest(&self, why: &str) -> bool {
+        self.driver.rest(why)
+    }
+
     fn changes(&self, attribute: &str) -> Option<&Arc<Changes>> {
         (attribute == "state").then(|| self.driver.changes())
     }

@@ -98,6 +98,17 @@ fn out_of_reach(error: Error) -> Error {
 }
 
 impl Device for Servo {
+    fn rest(&self, _why: &str) -> bool {
+        let mut work = lock(&self.work);
+        // Whatever comes of the write: closed, the tree has it.
+        let is_driven = work.value.take().is_some();
+        is_driven
+            && self
+                .tree
+                .write(&format!("{}/power", self.node), "0")
+                .is_ok()
+    }
+
     fn attributes(&self) -> &'static [Attribute] {
         &ATTRIBUTES
     }

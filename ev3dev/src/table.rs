@@ -81,6 +81,16 @@ impl Table {
         self.known.iter().filter(|known| known.is_present).count()
     }
 
+    /// All devices, also those that are gone.
+    pub fn devices(&self) -> Vec<Arc<dyn Device>> {
+        let nodes = self.entries.iter().map(|entry| &entry.node);
+        let devices = nodes.filter_map(|node| match node {
+            Node::Device(device) => Some(Arc::clone(device)),
+            Node::Directory | Node::Attribute(..) => None,
+        });
+        devices.collect()
+    }
+
     /// How many names there are.
     pub fn len(&self) -> usize {
         self.entries.len()

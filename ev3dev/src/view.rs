@@ -83,6 +83,13 @@ impl View {
         lock(&self.table).count()
     }
 
+    /// Brings everything to rest that programs drive through this view; whether there was something.
+    pub fn rest(&self, why: &str) -> bool {
+        let devices = lock(&self.table).devices();
+        let driven = devices.iter().filter(|device| device.rest(why));
+        driven.count() > 0
+    }
+
     /// Looks through the tree if that was not done just now. Without a tree everything stays as it was.
     fn refresh(&self) {
         let Ok(mut scanned) = self.scanned.try_lock() else {

@@ -262,10 +262,29 @@ impl Driver {
         }
     }
 
-    /// Lets the motor go, because it cannot be driven. If it does not even take that now, the loop tries again.
+    /// Lets the motor go if it is driven; whether it was.
+    pub fn rest(&self, why: &str) -> bool {
+        let mut files = lock(&self.files);
+        if files.power.is_none() {
+            return false;
+        }
+        let before = self.state();
+        self.release(&mut files, why.to_owned());
+        drop(files);
+        self.tell_if_changed(before);
+        self.hurry();
+        true
+    }
+
+    /// Lets the motor go, because it cannot be driven.
     fn give_up(&self, files: &mut Files, error: &Error) {
+        self.release(files, error.to_string().replace('\n', " "));
+    }
+
+    /// If the motor does not take that now, the loop tries again.
+    fn release(&self, files: &mut Files, why: String) {
         self.control().let_go();
-        files.fault = error.to_string().replace('\n', " ");
+        files.fault = why;
         files.sent = None;
         // The lease may be another's, or the tree gone, which brings the motor to rest by itself.
         let refused = self.send(files, 0).is_err();
@@ -456,6 +475,35 @@ mod tests {
                 assert_eq!(std::fs::read_to_string(&value).unwrap(), power);
             }
         }
+        driver.retire();
+    }
+
+    #[test]
+    fn a_motor_that_is_driven_rests_with_a_reason_and_one_that_is_not_is_left_alone() {
+        let root = tempfile::tempdir().unwrap();
+        let value = root.path().join("value");
+        std::fs::write(&value, "").unwrap();
+        let paths = Paths {
+            power: "value".to_owned(),
+            encoder: None,
+        };
+        let tree = Tree::new(root.path().to_owned());
+        let changes = Changes::new(KernelSlot::default());
+        let driver = Driver::new(tree, paths, Control::new(false, 100), changes);
+        assert!(!driver.rest("why"));
+        assert_eq!(driver.fault(), "");
+        driver.control().setpoints.duty_cycle = 30;
+        driver.command(Command::RunDirect).unwrap();
+        std::fs::write(&value, "").unwrap();
+        assert!(driver.rest("why"));
+        assert_eq!(std::fs::read_to_string(&value).unwrap(), "0");
+        assert_eq!(
+            (driver.fault().as_str(), driver.state().as_str()),
+            ("why", "")
+        );
+        driver.command(Command::RunDirect).unwrap();
+        assert_eq!(std::fs::read_to_string(&value).unwrap(), "30");
+        assert_eq!(driver.fault(), "");
         driver.retire();
     }
 }

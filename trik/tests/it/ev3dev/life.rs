@@ -85,6 +85,45 @@ fn a_serving_process_that_is_stopped_lets_its_motors_rest_and_the_view_comes_bac
 }
 
 #[test]
+fn while_the_keeper_is_stopped_motors_rest_and_it_is_told_to_go_on() {
+    let Some((robot, view)) = seen() else { return };
+    let both = view_processes(&robot);
+    let (keeper, server) = both;
+    for _ in 0..2 {
+        view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+        view.run(RIGHT, &[("duty_cycle_sp", 30)], "run-direct");
+        view.run("servo-motor/motor0", &[("position_sp", 20)], "run");
+        eventually("power", || {
+            robot.duty(3).unwrap() != 0 && robot.duty(4).unwrap() != 0
+        });
+        let begin = Instant::now();
+        processes::signal(keeper, Signal::SIGSTOP);
+        eventually("rest", || {
+            (robot.duty(3).unwrap(), robot.duty(4).unwrap()) == (0, 0)
+        });
+        let rested = begin.elapsed();
+        println!("rest {rested:?} after the keeper was stopped");
+        // Within a second, with room for the other tests of this machine.
+        assert!(rested < Duration::from_secs(5), "{rested:?}");
+        eventually("a servo without power", || {
+            robot.number("servos/S1/power") == 0.0
+        });
+        eventually("the keeper", || !processes::is_stopped(keeper));
+        assert_eq!(view.state(LEFT), "");
+        let why = view.text(&format!("{LEFT}/fault"));
+        assert!(why.ends_with(&format!("({keeper}) was stopped")), "{why}");
+    }
+    assert_eq!(view_processes(&robot), both);
+    let told = "was stopped: motors were brought to rest, and it was told to go on";
+    eventually("a complaint", || robot.complaints().contains(told));
+    // It keeps the mount as before.
+    processes::signal(server, Signal::SIGKILL);
+    eventually("the view again", || {
+        view_processes(&robot) != both && view.read(&format!("{LEFT}/state")).is_ok()
+    });
+}
+
+#[test]
 fn an_unmount_of_the_view_brings_its_motors_to_rest() {
     let Some(robot) = robot(&[]) else { return };
     let mut alone = Alone::start(&robot.home, &robot.root, &[]);
