@@ -17,7 +17,8 @@ const WORLD: &str = "control/world";
 
 /// Programs that are heard, and what is heard of their arguments.
 const SPEAKERS: [(&str, &str); 3] = [
-    ("etc/trik/say", "words=$*\n"),
+    // The blank before a minus sign is not heard.
+    ("etc/trik/say", "words=$*\nwords=${words# }\n"),
     (
         "usr/lib/trikfs/tone",
         "words=\"(a tone of ${1%% *} Hz for ${1##* } ms)\"\n",

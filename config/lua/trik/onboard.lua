@@ -97,14 +97,28 @@ local function tone()
   }
 end
 
+-- Bytes of a spoken text.
+local SPOKEN = 400
+
+-- The script of the system gives its text on to a program of speech, which takes words that begin with '-' for options, as
+-- it takes negative numbers then; what begins with a blank is none, and sounds the same.
+local function say()
+  return {
+    about = 'a text to be spoken; one after the other, and at most 8 wait',
+    src = program { run = { '/etc/trik/say' } }, format = 'text ' .. SPOKEN, input_tuple_size = SPOKEN + 1,
+    converter = function() return false end,
+    write_converter = function(a_s, a, b_s, b)
+      local words = ba.text(a)
+      text.put(b, words:sub(1, 1) == '-' and ' ' .. words or words)
+    end,
+  }
+end
+
 local function sound()
   return {
     tone = tone(),
     volume = attribute_number('/sys/bus/i2c/devices/2-0050/volume', 'i32 volume', 'loudness of the loudspeaker, 0 to 20', 20),
-    say = {
-      about = 'a text to be spoken; one after the other, and at most 8 wait',
-      src = program { run = { '/etc/trik/say' } }, format = 'text 400',
-    },
+    say = say(),
     play = {
       about = 'path of a sound file (WAV) to be played; one after the other, and at most 8 wait',
       src = program { run = { '/usr/bin/aplay', '--quiet' } }, format = 'text 400',

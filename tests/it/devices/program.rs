@@ -21,6 +21,7 @@ fn board() -> Board {
 
 const CONFIG: &str = "trikfs = {
   say = { src = program{ run = { '$DIR/say', 'loud' } }, format = 'text 12' },
+  plain = { src = program{ run = { '$DIR/say', 'loud', '--' } }, format = 'text 12' },
   gone = { src = program{ run = { '$DIR/absent' } }, format = 'text 12' },
 }";
 
@@ -67,6 +68,11 @@ put(b'fail')
         log.contains("say: no voice") && log.contains("say ended with exit status: 3")
     });
     assert_eq!(m.text("say/format"), "text 12\n");
+    // Where options end a text is none.
+    m.write("plain/value", "-5").unwrap();
+    eventually("a negative number", || {
+        m.board().content("said").ends_with(b"loud|--|-5|\n")
+    });
 }
 
 #[test]

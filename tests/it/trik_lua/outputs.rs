@@ -210,6 +210,22 @@ fn a_tone_is_a_text_for_its_program_and_refused_if_nobody_could_hear_it() {
 }
 
 #[test]
+fn a_spoken_text_is_no_option_of_the_program_that_speaks() {
+    let mut robot = robot("");
+    let long = "-".repeat(400);
+    for (text, spoken) in [
+        ("hello", "hello"),
+        ("-5", " -5"),
+        ("5 - 3", "5 - 3"),
+        (&long, &format!(" {long}")),
+    ] {
+        let mut wanted = spoken.as_bytes().to_vec();
+        wanted.resize(401, 0);
+        assert_eq!(robot.write_text("sound/say", text), Ok(wanted), "{text}");
+    }
+}
+
+#[test]
 fn the_lights_and_the_loudness_are_texts_of_sysfs() {
     let mut robot = robot("");
     let text = |word: &str| {

@@ -143,6 +143,14 @@ impl Robot {
         Ok(driven.expect("a law that gives something"))
     }
 
+    /// From program to device: the bytes of a text.
+    pub fn write_text(&mut self, path: &str, text: &str) -> Result<Vec<u8>, String> {
+        let mut tuple = text.as_bytes().to_vec();
+        tuple.resize(self.node(path).written_tuple_size(), 0);
+        let written = self.convert(path, true, &tuple)?;
+        Ok(written.expect("a written tuple goes on"))
+    }
+
     /// From program to device: the bytes of these numbers.
     pub fn write(&mut self, path: &str, numbers: &[f64]) -> Result<Vec<u8>, String> {
         let node = self.node(path);

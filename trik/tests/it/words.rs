@@ -134,6 +134,8 @@ fn without_a_terminal_every_sound_is_told_in_a_line() {
     let Some(robot) = robot(&[]) else { return };
     for (file, text, line) in [
         ("sound/say/value", "hello", "said: hello"),
+        // A negative number is no option of the program that speaks.
+        ("sound/say/value", "-5", "said: -5"),
         ("sound/say/value", "hello", "said: hello"),
         (
             "sound/tone/value",

@@ -8,6 +8,9 @@ use crate::programs::Programs;
 use config::description::{CommandDescription, ProgramDescription};
 use std::sync::Arc;
 
+/// After this word a program takes nothing for an option (POSIX, utility syntax guideline 10).
+const END: &str = "--";
+
 impl Kind for ProgramDescription {
     fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
         Err(Error::AccessDenied)
@@ -51,9 +54,15 @@ impl Sink for ProgramSink {
         let end = tuple.iter().position(|&byte| byte == 0);
         let text = std::str::from_utf8(&tuple[..end.unwrap_or(tuple.len())])
             .map_err(|_| Error::Invalid("the text is no UTF-8".to_owned()))?;
-        if text.starts_with('-') {
+        let ends_options = self
+            .command
+            .arguments
+            .last()
+            .is_some_and(|word| word == END);
+        if text.starts_with('-') && !ends_options {
             return Err(Error::Invalid(
-                "the program would take a text that begins with '-' for an option".to_owned(),
+                "the program would take a text that begins with '-' for an option: if it knows '--', end its run with that"
+                    .to_owned(),
             ));
         }
         self.programs.enqueue(&self.command, text)
