@@ -4,12 +4,13 @@
 
 use crate::convert::shared::Cache;
 use crate::convert::shared::copies::Copies;
-use crate::convert::{Recipe, Workshop};
+use crate::convert::{Recipe, Workshop, isolated};
 use crate::reload;
 use config::description::{Config, Place};
 use config::limits::CONFIG_BYTES_MAX;
 use config::load::{Loaded, Loader};
 use config::problem::Problem;
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -60,9 +61,13 @@ pub fn check(
         cache: &paths.cache,
         copies: &Copies::default(),
         progress,
+        unconfined: RefCell::default(),
     };
     for description in reload::all(&loaded.config) {
         Recipe::prepare(description, &workshop, None)?;
+    }
+    if let Some(line) = isolated::unconfined_line(&workshop.unconfined.into_inner()) {
+        progress(&line);
     }
     let mut warnings = loaded.warnings;
     warnings.extend(missing_devices(&loaded.config));

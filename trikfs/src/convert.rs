@@ -20,6 +20,7 @@ use lua::StatePool;
 use plan::Plan;
 use shared::copies::Copies;
 use shared::{Cache, NativeStage};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -54,6 +55,8 @@ pub struct Workshop<'a> {
     pub copies: &'a Copies,
     /// Told before something that takes long.
     pub progress: &'a dyn Fn(&str),
+    /// Nodes whose isolated converters the kernel holds to no list of system calls, as they are found.
+    pub unconfined: RefCell<Vec<String>>,
 }
 
 impl Recipe {

@@ -204,6 +204,8 @@ pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
 pub const ISOLATED_LOG_LINES: usize = 16;
 /// Bytes of these lines together.
 pub const ISOLATED_LOG_BYTES: usize = ISOLATED_MESSAGE_BYTES / 2;
+/// Nodes that the line names which tells that the kernel cannot confine isolated converters.
+pub const ISOLATED_NODES_NAMED: usize = 8;
 /// Bytes of memory that all its states may take together.
 pub const ISOLATED_DATA_BYTES: libc::rlim_t = 64 << 20;
 /// Bytes of addresses beside those of the program and that memory: libraries, and what no limit of data counts.

@@ -7,7 +7,7 @@
 use crate::convert::lua::StateMaker;
 use crate::convert::shared::Cache;
 use crate::convert::shared::copies::{self, Copies, CopyNames};
-use crate::convert::{Recipe, Workshop};
+use crate::convert::{Recipe, Workshop, isolated};
 use crate::engine::Engine;
 use crate::events::lock;
 use crate::fs::{Forest, OpenFiles};
@@ -21,6 +21,7 @@ use crate::tree::{Owner, Tree};
 use config::description::{Alias, Config, NodeDescription, StageKind};
 use config::load::Loader;
 use config::problem::Problem;
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 use std::io;
 use std::os::unix::fs::MetadataExt;
@@ -225,6 +226,7 @@ impl Reloader {
             cache: &setup.cache,
             copies: &copies,
             progress,
+            unconfined: RefCell::default(),
         };
         let mut builder = Builder {
             engine: &setup.engine,
@@ -250,12 +252,18 @@ impl Reloader {
         };
         let nodes = builder.build(&loaded.config)?;
         let kept = builder.kept;
+        let unconfined = builder.workshop.unconfined.into_inner();
         let mut problems = loaded
             .warnings
             .into_iter()
             .map(|warning| warning.to_string())
             .collect::<Vec<_>>();
         problems.extend(loaded.log);
+        // Of nodes that stay it was told when they came.
+        if let Some(line) = isolated::unconfined_line(&unconfined) {
+            progress(&line);
+            problems.push(line);
+        }
         let rest = self.rest_actions(&nodes, &mut problems);
         // Nothing fails from here on: what `setup` cannot do is only told.
         self.setup_runner.run(&loaded.config.setup);

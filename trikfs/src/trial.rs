@@ -21,6 +21,7 @@ use converter::error::Blame;
 use converter::limits::VECTORS_BYTES_MAX;
 use converter::trial::{Opened, Report, Trial};
 use converter::{Conversion, Fault, trial, vectors};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -69,6 +70,7 @@ impl Subject {
             cache: &paths.cache,
             copies: &Copies::default(),
             progress: &|_| {},
+            unconfined: RefCell::default(),
         };
         let maker = StateMaker::start();
         let maker = maker.map_err(|error| Failure::Opening(error.to_string()))?;

@@ -1,6 +1,7 @@
 //! `isolate = true`: whatever machine code does costs its own node an error that says what happened, and nobody else anything.
 
 mod rest;
+mod system;
 
 use super::shared::COUNTING;
 use crate::{is_of_the_controller, mount_on, trikfs};

@@ -20,8 +20,8 @@ use crate::events::lock;
 use crate::failure::Blame;
 use crate::limits::{
     ISOLATED_BYTES, ISOLATED_CALM, ISOLATED_CLOSE_PATIENCE, ISOLATED_LOAD_PATIENCE,
-    ISOLATED_LOG_LINES, ISOLATED_PATIENCE, ISOLATED_PAUSE, ISOLATED_PAUSE_MAX,
-    ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES,
+    ISOLATED_LOG_LINES, ISOLATED_NODES_NAMED, ISOLATED_PATIENCE, ISOLATED_PAUSE,
+    ISOLATED_PAUSE_MAX, ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES,
 };
 use converter::{Conversion, Direction, Fault};
 use memory::Shared;
@@ -51,6 +51,8 @@ struct Life {
     /// What was loaded, with the files open: their names in the cache may go.
     loads: Vec<(Load, Option<File>)>,
     is_sealed: bool,
+    /// The kernel held the first one to its list of system calls, so it has to hold all others.
+    is_confined: bool,
     running: Option<Running>,
     /// How many were started.
     generation: u32,
@@ -78,6 +80,7 @@ impl Isolated {
             life: Mutex::new(Life {
                 loads: Vec::new(),
                 is_sealed: false,
+                is_confined: false,
                 running: None,
                 generation: 0,
                 lost: None,
@@ -159,10 +162,12 @@ impl Isolated {
     pub fn seal(&self) -> Result<bool, LibraryError> {
         let mut life = lock(&self.life);
         life.is_sealed = true;
-        life.seal().map_err(|lost| LibraryError::Library {
+        let is_confined = life.seal().map_err(|lost| LibraryError::Library {
             shown: "the isolated converter".to_owned(),
             why: Wrong::Told(lost.blame(), lost.to_string()),
-        })
+        })?;
+        life.is_confined = is_confined;
+        Ok(is_confined)
     }
 }
 
@@ -444,8 +449,8 @@ impl Life {
                 LoadRefusal::Lost(lost) => lost,
             })?;
         }
-        if self.is_sealed {
-            self.seal()?;
+        if self.is_sealed && !self.seal()? && self.is_confined {
+            return Err(Lost::Unconfined);
         }
         Ok(())
     }
@@ -544,6 +549,20 @@ impl std::fmt::Display for Refused {
     }
 }
 
+/// What is to be told of nodes whose converters the kernel holds to no list of system calls; None: there are none.
+pub fn unconfined_line(nodes: &[String]) -> Option<String> {
+    let (named, more) = nodes.split_at(nodes.len().min(ISOLATED_NODES_NAMED));
+    let whose = match (nodes.len(), more.len()) {
+        (0, _) => return None,
+        (1, _) => format!("node {}", named.concat()),
+        (_, 0) => format!("nodes {}", named.join(", ")),
+        (_, more) => format!("nodes {} and {more} more", named.join(", ")),
+    };
+    Some(format!(
+        "{whose}: this kernel has no filters of system calls (seccomp): the isolated converter is held by limits of memory and the user's rights alone, so it could open files, start processes and send signals"
+    ))
+}
+
 /// Blames by their numbers in a message.
 const BLAMES: [Blame; 5] = [
     Blame::Person,
@@ -571,6 +590,23 @@ fn blame_of(number: u8) -> Blame {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_the_kernel_lacks_is_told_with_the_first_nodes_by_name() {
+        let line = |count: usize| {
+            let nodes: Vec<_> = (0..count).map(|number| format!("n{number}")).collect();
+            unconfined_line(&nodes)
+        };
+        assert_eq!(line(0), None);
+        let starts = |count, start: &str| line(count).is_some_and(|line| line.starts_with(start));
+        assert!(starts(1, "node n0: this kernel has no filters"));
+        assert!(starts(2, "nodes n0, n1: this kernel"));
+        assert!(starts(8, "nodes n0, n1, n2, n3, n4, n5, n6, n7: this"));
+        assert!(starts(
+            11,
+            "nodes n0, n1, n2, n3, n4, n5, n6, n7 and 3 more: this"
+        ));
+    }
 
     #[test]
     fn blames_come_back_as_they_went() {

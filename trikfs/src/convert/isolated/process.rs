@@ -44,6 +44,8 @@ pub(super) enum Lost {
     Slow(Duration),
     /// It does not let its rights be taken.
     Resists,
+    /// The kernel does not hold it to its list of system calls, as it held another one before.
+    Unconfined,
     /// There is none: it was ended a moment before.
     Absent,
     /// It has said what no process of ours says.
@@ -54,7 +56,7 @@ impl Lost {
     /// The person or the part that can mend it.
     pub(super) fn blame(&self) -> Blame {
         match self {
-            Self::NotStarted(_) | Self::Stopped => Blame::Machine,
+            Self::NotStarted(_) | Self::Stopped | Self::Unconfined => Blame::Machine,
             Self::NotLoaded(..)
             | Self::Killed(_)
             | Self::Exited(_)
@@ -93,6 +95,9 @@ impl fmt::Display for Lost {
             ),
             Self::Resists => {
                 f.write_str("its process does not let the right to open files be taken from it")
+            }
+            Self::Unconfined => {
+                f.write_str("the system puts no filter of system calls in force for its process")
             }
             Self::Absent => f.write_str("its process has just ended"),
             Self::Rubbish => f.write_str("its process answered what is no answer"),
