@@ -282,7 +282,7 @@ fn the_table_of_errors_has_a_row_for_every_error_in_order() {
     for row in rows {
         assert_eq!(row.len(), 4, "{row:?}");
         assert!(
-            ["caller", "device", "converter", "filesystem"].contains(&row[2]),
+            ["caller", "device", "converter", "system", "filesystem"].contains(&row[2]),
             "{row:?}"
         );
         assert!(row.iter().all(|cell| !cell.is_empty()), "{row:?}");

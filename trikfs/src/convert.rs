@@ -162,7 +162,7 @@ impl Recipe {
                 let log: LogSink = Arc::new(|_| {});
                 let info = self.open_info(plan, direction, &changed, &log);
                 let opened = library.open(&info);
-                opened.map_err(|fault| library.refusal(&fault))?;
+                opened.map_err(|error| library.refusal(error))?;
             }
         }
         *params = Arc::new(changed);
@@ -205,7 +205,7 @@ impl Recipe {
         for (plan, stage) in plans.iter().zip(stages) {
             if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                stage.code = library.open(&info).map_err(unusable)?;
+                stage.code = library.open(&info)?;
             }
         }
         Ok(())
@@ -245,7 +245,7 @@ impl Recipe {
             let (input_size, output_size) = (plan.input_size, plan.output_size);
             let code = if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                library.open(&info).map_err(unusable)?
+                library.open(&info)?
             } else {
                 let Some(vm) = vm.as_mut() else {
                     return Err(Error::Internal(format!(
@@ -438,7 +438,14 @@ impl Stage {
     fn convert_many(&mut self, vm: Option<&mut Vm>, input: &[u8], output: &mut [u8]) -> Batch {
         let (consumed, produced, fault) = match (&mut self.code, vm) {
             (Code::Native(native), _) => native.convert_many(input, output),
-            (Code::Isolated(isolated), _) => isolated.convert_many(input, output),
+            (Code::Isolated(isolated), _) => {
+                let (consumed, produced, fault) = isolated.convert_many(input, output);
+                return Batch {
+                    consumed,
+                    produced,
+                    fault,
+                };
+            }
             (Code::Lua(stage), Some(vm)) => vm.convert_many(*stage, input, output),
             (Code::Lua(_), None) => (0, 0, Some(NO_STATE.into())),
         };
@@ -461,9 +468,7 @@ impl Code {
             (Self::Native(native), _) => native
                 .convert(input, output)
                 .map_err(|fault| Error::of_converter(&fault)),
-            (Self::Isolated(isolated), _) => isolated
-                .convert(input, output)
-                .map_err(|fault| Error::of_converter(&fault)),
+            (Self::Isolated(isolated), _) => isolated.convert(input, output),
             (Self::Lua(stage), Some(vm)) => vm
                 .convert(*stage, input, output)
                 .map_err(|fault| Error::of_converter(&fault)),

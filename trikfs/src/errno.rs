@@ -17,6 +17,8 @@ pub enum Blame {
     Device,
     /// The converter's code or its data.
     Converter,
+    /// The computer: its kernel, its memory, its limits.
+    System,
     /// This filesystem.
     Ours,
 }
@@ -28,6 +30,7 @@ impl fmt::Display for Blame {
             Self::Caller => "caller",
             Self::Device => "device",
             Self::Converter => "converter",
+            Self::System => "system",
             Self::Ours => "filesystem",
         })
     }
@@ -79,6 +82,8 @@ pub enum Error {
     Recorded(i32, String),
     /// The converter failed.
     Converter(String),
+    /// The system refuses what a converter needs to run, such as a process.
+    System(String),
     /// The open file belongs to a node that a reload changed or removed.
     Stale,
     /// Too many open files; whose, and how many are allowed.
@@ -241,6 +246,7 @@ impl Error {
             Self::Measurement(_) => libc::EIO,
             Self::Recorded(errno, _) => *errno,
             Self::Converter(_) => libc::EIO,
+            Self::System(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
             Self::TooManyOpen(_) => libc::EMFILE,
             Self::NoMemory(_) => libc::ENOMEM,
@@ -306,6 +312,7 @@ impl Error {
             | Self::Measurement(_)
             | Self::Recorded(..) => Blame::Device,
             Self::Converter(_) => Blame::Converter,
+            Self::System(_) => Blame::System,
             Self::Internal(_) => Blame::Ours,
         }
     }
@@ -347,6 +354,7 @@ impl fmt::Display for Error {
             | Self::Measurement(what)
             | Self::Recorded(_, what)
             | Self::Converter(what)
+            | Self::System(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),
             Self::Silent => f.write_str(

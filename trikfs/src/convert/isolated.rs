@@ -31,7 +31,7 @@ use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-use words::{Answer, Closed, Load, Loaded, Request, Sealed};
+use words::{Answer, Begun, Closed, Load, Loaded, Request, Sealed};
 
 /// The process of one node's native converters, through the deaths of it.
 pub struct Isolated {
@@ -221,12 +221,7 @@ impl Life {
                 is_pause: true,
             });
         }
-        let started = Running::start().map_err(Lost::NotStarted);
-        let ready = started.and_then(|running| {
-            self.running = Some(running);
-            self.generation = self.generation.wrapping_add(1);
-            self.fill()
-        });
+        let ready = self.begin().and_then(|()| self.fill());
         ready.map_err(|lost| {
             self.forget(&lost);
             Refused {
@@ -235,6 +230,15 @@ impl Life {
                 is_pause: false,
             }
         })
+    }
+
+    /// A new process, in which nothing of a converter has run: what it dies of is not the converter's fault.
+    fn begin(&mut self) -> Result<(), Lost> {
+        self.running = Some(Running::start().map_err(Lost::NotStarted)?);
+        self.generation = self.generation.wrapping_add(1);
+        let begun = self.ask(&Request::Begin, ISOLATED_LOAD_PATIENCE, false);
+        let Begun = begun.map_err(|lost| Lost::NotBegun(Box::new(lost)))?;
+        Ok(())
     }
 
     /// Loads into a new process what the one before had.

@@ -9,7 +9,7 @@ use super::{Code, Workshop};
 use crate::errno::Error;
 use config::description::{NodeDescription, StageDescription, StageKind};
 use config::problem::Problem;
-use converter::{Direction, Fault};
+use converter::Direction;
 use std::fmt::Display;
 use std::sync::Arc;
 use std::time::Duration;
@@ -30,20 +30,23 @@ pub(super) enum Machine {
 
 impl Machine {
     /// Why it cannot be opened, for one who has changed a param: the number is wrong, unless there is no process to ask.
-    pub(super) fn refusal(&self, fault: &Fault) -> Error {
+    pub(super) fn refusal(&self, error: Error) -> Error {
         let is_asked = match self {
             Self::Here(_) => true,
             Self::Apart(apart) => apart.has_process(),
         };
-        match is_asked {
-            true => Error::Invalid(fault.to_string()),
-            false => Error::of_converter(fault),
+        match error {
+            Error::Converter(text) if is_asked => Error::Invalid(text),
+            other => other,
         }
     }
 
-    pub(super) fn open(&self, info: &shared::OpenInfo<'_>) -> Result<Code, Fault> {
+    pub(super) fn open(&self, info: &shared::OpenInfo<'_>) -> Result<Code, Error> {
         match self {
-            Self::Here(library) => library.open(info).map(Code::Native),
+            Self::Here(library) => {
+                let opened = library.open(info).map(Code::Native);
+                opened.map_err(|fault| Error::Converter(fault.to_string()))
+            }
             Self::Apart(apart) => apart.open(info).map(Code::Isolated),
         }
     }
@@ -159,7 +162,7 @@ fn try_openings(
                 log: Arc::new(|_| {}),
             };
             let opened = library.open(&info);
-            opened.map_err(|fault| refused(description, stage, &fault))?;
+            opened.map_err(|error| refused(description, stage, &error))?;
         }
     }
     Ok(())

@@ -71,3 +71,46 @@ fn a_kernel_without_seccomp_is_told_once_in_the_log_with_the_nodes_and_what_it_m
     assert_eq!(told("nodes a, b"), 1, "{}", m.log());
     assert_eq!(told("node bad"), 1, "{}", m.log());
 }
+
+#[test]
+fn a_process_that_cannot_be_started_is_the_systems_fault_and_is_tried_again() {
+    let Some(m) = super::hostile() else { return };
+    // While the daemon may open nothing, there is neither memory for another process nor a way to start it.
+    m.python(&format!(
+        "
+fd = open_ro(M + '/bad/device')
+assert os.pread(fd, 2, 0) == b'A\\x01'
+daemon, process = {}, {}
+soft, hard = resource.prlimit(daemon, resource.RLIMIT_NOFILE)
+def fault(): return open(M + '/bad/fault').read()
+def refused():
+    try: os.pread(fd, 2, 0)
+    except OSError as error: assert error.errno == errno.EIO, error
+    return fault().startswith('system: ')
+resource.prlimit(daemon, resource.RLIMIT_NOFILE, (3, hard))
+try:
+    os.kill(process, 9)
+    eventually(refused, 'a process that does not come')
+    told = fault()
+    assert told.startswith('system: hostile.so: its process cannot be started: Too many open files'), told
+finally:
+    resource.prlimit(daemon, resource.RLIMIT_NOFILE, (soft, hard))
+def works():
+    try: return os.pread(fd, 2, 0) == b'A\\x01'
+    except OSError: return False
+eventually(works, 'another process')
+assert fault() == '', fault()
+",
+        m.daemon(),
+        super::process_of(&m)
+    ));
+    let log = m.log();
+    assert!(
+        log.contains("bad: system: hostile.so: its process cannot be started"),
+        "{log}"
+    );
+    assert!(
+        !log.contains("bad: converter: hostile.so: its process cannot"),
+        "{log}"
+    );
+}

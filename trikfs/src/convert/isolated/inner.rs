@@ -7,7 +7,7 @@ use super::blame_number;
 use super::calls::{Stage, confine};
 use super::memory::Shared;
 use super::process::room;
-use super::words::{Answer, Closed, Load, Loaded, Many, One, Opened, Request, Sealed};
+use super::words::{Answer, Begun, Closed, Load, Loaded, Many, One, Opened, Request, Sealed};
 use crate::convert::shared::{Library, LibraryError, NativeStage, OpenInfo};
 use crate::events::lock;
 use crate::failure::Failure;
@@ -138,6 +138,7 @@ const UNKNOWN: &str = "there is no such converter here";
 impl Inner {
     fn answer(&mut self, request: Request<'_>, out: &mut Vec<u8>) {
         match request {
+            Request::Begin => Begun.write(out),
             Request::Load(load) => self.load(&load).write(out),
             Request::Seal => self.seal().write(out),
             Request::Open {

@@ -30,6 +30,8 @@ pub const COMMAND: &str = "isolated";
 pub(super) enum Lost {
     /// There is no process.
     NotStarted(io::Error),
+    /// There was one, to which that happened while nothing but our own code ran in it.
+    NotBegun(Box<Self>),
     /// It does not load this library again, for this reason.
     NotLoaded(String, String),
     /// A signal has ended it.
@@ -56,8 +58,10 @@ impl Lost {
     /// The person or the part that can mend it.
     pub(super) fn blame(&self) -> Blame {
         match self {
-            Self::NotStarted(_) | Self::Stopped | Self::Unconfined => Blame::Machine,
-            Self::NotLoaded(..)
+            Self::NotStarted(_) | Self::NotBegun(_) | Self::Unconfined => Blame::Machine,
+            // Its own code can do that as well as somebody else.
+            Self::Stopped
+            | Self::NotLoaded(..)
             | Self::Killed(_)
             | Self::Exited(_)
             | Self::Late(_)
@@ -73,6 +77,7 @@ impl fmt::Display for Lost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotStarted(error) => write!(f, "its process cannot be started: {error}"),
+            Self::NotBegun(lost) => write!(f, "before anything was loaded, {lost}"),
             Self::NotLoaded(library, why) => write!(
                 f,
                 "another process does not load {library}: {why}; write the configuration again"
@@ -288,4 +293,23 @@ fn starter() -> io::Result<Sender<Start>> {
 /// Room for any message.
 pub(super) fn room() -> Vec<u8> {
     vec![0; ISOLATED_MESSAGE_BYTES]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_happens_to_a_process_before_a_converter_is_in_it_is_the_systems_fault() {
+        let killed = || Lost::Killed(9);
+        assert_eq!(killed().blame(), Blame::Converter);
+        let before = Lost::NotBegun(Box::new(killed()));
+        assert_eq!(before.blame(), Blame::Machine);
+        assert_eq!(
+            before.to_string(),
+            "before anything was loaded, its process was ended by SIGKILL"
+        );
+        let refused = Lost::NotStarted(io::Error::from_raw_os_error(libc::EAGAIN));
+        assert_eq!(refused.blame(), Blame::Machine);
+    }
 }

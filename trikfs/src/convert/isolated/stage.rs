@@ -8,7 +8,9 @@ use super::process::Lost;
 use super::words::{Many, One, Opened, Request};
 use super::{Apart, Life, Place};
 use crate::convert::shared::OpenInfo;
+use crate::errno::Error;
 use crate::events::lock;
+use crate::failure::Blame;
 use crate::limits::{ISOLATED_BYTES, ISOLATED_LOG_LINES, ISOLATED_TUPLE_BYTES, ISOLATED_TUPLES};
 use converter::{Conversion, Direction, Fault};
 use std::collections::BTreeMap;
@@ -19,7 +21,7 @@ impl Apart {
     ///
     /// # Errors
     /// The converter's own refusal, in its words, or what has become of its process.
-    pub fn open(&self, info: &OpenInfo<'_>) -> Result<IsolatedStage, Fault> {
+    pub fn open(&self, info: &OpenInfo<'_>) -> Result<IsolatedStage, Error> {
         let mut stage = IsolatedStage {
             apart: self.clone(),
             direction: info.direction,
@@ -51,7 +53,7 @@ impl IsolatedStage {
     ///
     /// # Errors
     /// The fault in the converter's words, or what has become of its process, after the library's name.
-    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, Fault> {
+    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, Error> {
         if input.len().max(output.len()) > ISOLATED_TUPLE_BYTES {
             let (_, made, fault) = self.convert_many(input, output);
             return match fault {
@@ -74,7 +76,7 @@ impl IsolatedStage {
                 return Ok(Conversion::Produced);
             }
             Ok(One::Produced(_)) => Lost::Rubbish,
-            Ok(One::Fault(why)) => return Err(Fault::new(why)),
+            Ok(One::Fault(why)) => return Err(said(why)),
             Err(lost) => lost,
         };
         Err(self.lost(&mut life, &lost))
@@ -85,7 +87,7 @@ impl IsolatedStage {
         &mut self,
         input: &[u8],
         output: &mut [u8],
-    ) -> (usize, usize, Option<Fault>) {
+    ) -> (usize, usize, Option<Error>) {
         let (mut taken, mut made) = (0, 0);
         loop {
             let from = &input[taken * self.input_size..];
@@ -113,7 +115,7 @@ impl IsolatedStage {
     }
 
     /// As many whole tuples as the shared memory holds, and at least one.
-    fn batch(&mut self, input: &[u8], output: &mut [u8]) -> (usize, usize, Option<Fault>) {
+    fn batch(&mut self, input: &[u8], output: &mut [u8]) -> (usize, usize, Option<Error>) {
         let fitting = |bytes: usize, size: usize| {
             let most = bytes.min(ISOLATED_BYTES) / size;
             most.min(ISOLATED_TUPLES)
@@ -144,7 +146,7 @@ impl IsolatedStage {
                 // A batch without a fault ends where the tuples or the room do.
                 Some((taken, made)) if fault.is_some() || taken == tuples || made == room => {
                     life.take_output(&mut output[..made * self.output_size]);
-                    return (taken, made, fault.map(Fault::new));
+                    return (taken, made, fault.map(said));
                 }
                 Some(_) | None => Lost::Rubbish,
             },
@@ -161,11 +163,12 @@ impl IsolatedStage {
     }
 
     /// The number of its state in the present process, which is started if there is none.
-    fn placed(&mut self, life: &mut Life) -> Result<u32, Fault> {
+    fn placed(&mut self, life: &mut Life) -> Result<u32, Error> {
         if !lock(&self.apart.process.left).is_empty() {
             self.apart.process.leave(life);
         }
-        life.start().map_err(|lost| self.labelled(&lost))?;
+        let started = life.start();
+        started.map_err(|refused| self.failure(refused.blame, &refused))?;
         if let Some((generation, instance)) = self.place
             && generation == life.generation
         {
@@ -187,20 +190,27 @@ impl IsolatedStage {
                 }
                 return Ok(instance);
             }
-            Ok(Opened::Fault(why)) => return Err(Fault::new(why)),
+            Ok(Opened::Fault(why)) => return Err(said(why)),
             Err(lost) => lost,
         };
         Err(self.lost(life, &lost))
     }
 
     /// The process is gone, as this caller is told.
-    fn lost(&self, life: &mut Life, lost: &Lost) -> Fault {
+    fn lost(&self, life: &mut Life, lost: &Lost) -> Error {
         life.forget(lost);
-        self.labelled(&format_args!("{lost}, and its states begin anew"))
+        let why = format_args!("{lost}, and its states begin anew");
+        self.failure(lost.blame(), &why)
     }
 
-    fn labelled(&self, why: &dyn std::fmt::Display) -> Fault {
-        Fault::new(format!("{}: {why}", self.apart.label))
+    fn failure(&self, blame: Blame, why: &dyn std::fmt::Display) -> Error {
+        let text = format!("{}: {why}", self.apart.label);
+        match blame {
+            Blame::Machine => Error::System(text),
+            Blame::Person | Blame::Configuration | Blame::Converter | Blame::Ours => {
+                Error::Converter(text)
+            }
+        }
     }
 }
 
@@ -213,4 +223,9 @@ impl Drop for IsolatedStage {
             self.apart.process.leave(&mut life);
         }
     }
+}
+
+/// What a converter said there.
+fn said(why: String) -> Error {
+    Error::of_converter(&Fault::new(why))
 }

@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 /// What the daemon wants.
 #[derive(Debug, PartialEq)]
 pub(super) enum Request<'a> {
+    /// Say that you are there, before anything is loaded.
+    Begin,
     /// Load a library, from a file of the cache; the next one loaded has the next number, from 0.
     Load(Load),
     /// Nothing is loaded any more: give up the right to open files.
@@ -50,6 +52,10 @@ pub(super) trait Answer<'a>: Sized {
     /// Reads a whole message; None: it is none.
     fn read(message: &'a [u8]) -> Option<Self>;
 }
+
+/// To [`Request::Begin`].
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Begun;
 
 /// To [`Request::Load`].
 #[derive(Debug, PartialEq, Eq)]
@@ -118,6 +124,7 @@ impl<'a> Request<'a> {
                 put_option(out, load.name.as_deref());
             }
             Self::Seal => out.push(1),
+            Self::Begin => out.push(6),
             Self::Open {
                 library,
                 direction,
@@ -198,9 +205,20 @@ impl<'a> Request<'a> {
                 input_bytes: rest.number()?,
                 output_bytes: rest.number()?,
             },
+            6 => Self::Begin,
             _ => return None,
         };
         rest.is_empty().then_some(request)
+    }
+}
+
+impl Answer<'_> for Begun {
+    fn write(&self, out: &mut Vec<u8>) {
+        out.push(0);
+    }
+
+    fn read(message: &[u8]) -> Option<Self> {
+        (message == [0]).then_some(Self)
     }
 }
 
@@ -423,6 +441,7 @@ mod tests {
     fn requests() -> Vec<Request<'static>> {
         let text = |text: &str| text.to_owned();
         vec![
+            Request::Begin,
             Request::Load(Load {
                 file: text("/c/lib-1.so"),
                 shown: text("a/libx.so"),
@@ -476,6 +495,7 @@ mod tests {
     #[test]
     fn each_answer_is_read_as_it_was_written_and_not_without_its_end() {
         let why = || "no echo".to_owned();
+        check(&Begun, false);
         check(&Loaded::Done, false);
         check(
             &Loaded::Refused {
@@ -512,6 +532,7 @@ mod tests {
     fn an_answer_to_another_request_is_none() {
         let mut message = Vec::new();
         Closed.write(&mut message);
+        assert_eq!(Begun::read(&message), None);
         assert_eq!(Loaded::read(&message), None);
         assert_eq!(Sealed::read(&message), None);
         assert_eq!(Opened::read(&message), None);
@@ -532,6 +553,7 @@ mod tests {
         #[test]
         fn bytes_of_a_converter_are_an_answer_or_nothing(tag in 0..70_u8, rest: Vec<u8>) {
             let bytes = [&[tag][..], &rest].concat();
+            prop_assert!(comes_back::<Begun>(&bytes));
             prop_assert!(comes_back::<Loaded>(&bytes) && comes_back::<Sealed>(&bytes));
             prop_assert!(comes_back::<Opened>(&bytes) && comes_back::<Closed>(&bytes));
             prop_assert!(comes_back::<One>(&bytes) && comes_back::<Many>(&bytes));
