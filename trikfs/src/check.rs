@@ -57,6 +57,7 @@ pub fn check(
     progress: &dyn Fn(&str),
 ) -> Result<Vec<Problem>, Problem> {
     let loaded = load(file, paths)?;
+    isolated::room::admit(reload::all(&loaded.config))?;
     let workshop = Workshop {
         cache: &paths.cache,
         copies: &Copies::default(),

@@ -88,6 +88,14 @@ impl Recipe {
         }
     }
 
+    /// The node has left the tree: its process ends, also if a program still has files of it open.
+    pub fn retire(&self) {
+        let write = self.write.iter().flatten();
+        for machine in self.read.iter().chain(write).flat_map(|plan| &plan.library) {
+            machine.retire();
+        }
+    }
+
     /// A private pipeline for one open file.
     pub fn open(&self, log: &LogSink) -> Result<Pipeline, Error> {
         let pool = lock(&self.lua).clone();

@@ -204,6 +204,11 @@ pub const ISOLATED_MESSAGE_BYTES: usize = 32 << 10;
 pub const ISOLATED_LOG_LINES: usize = 16;
 /// Bytes of these lines together.
 pub const ISOLATED_LOG_BYTES: usize = ISOLATED_MESSAGE_BYTES / 2;
+/// Isolated nodes of one configuration: as many as could take [`ISOLATED_DATA_BYTES`] each of all the memory that there is,
+/// which hardly any does, but so many on the smallest board,
+pub const ISOLATED_NODES_LEAST: usize = 8;
+/// ... and no more than these on any computer: a user has a number of processes, and a start takes milliseconds.
+pub const ISOLATED_NODES_MOST: usize = 256;
 /// Nodes that the line names which tells that the kernel cannot confine isolated converters.
 pub const ISOLATED_NODES_NAMED: usize = 8;
 /// Bytes of memory that all its states may take together.

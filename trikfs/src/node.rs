@@ -120,6 +120,7 @@ impl Node {
     pub fn retire(&self) {
         self.retired.store(true, Ordering::Release);
         self.sampling.newest.stop();
+        self.recipe.retire();
     }
 
     /// Bytes of one tuple that goes to the device.

@@ -218,6 +218,7 @@ impl Reloader {
     ) -> Result<usize, Problem> {
         let setup = &self.setup;
         let loaded = setup.loader.load(name, setup.base_dir.as_deref(), &bytes)?;
+        isolated::room::admit(all(&loaded.config))?;
         let uses_lua = all(&loaded.config).any(NodeDescription::uses_lua);
         let pool = uses_lua.then(|| self.maker.pool(loaded.program.clone()));
         let before = setup.forest.tree();

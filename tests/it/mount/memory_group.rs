@@ -130,6 +130,48 @@ end()
 }
 
 #[test]
+fn a_configuration_has_as_many_isolated_nodes_as_the_group_has_room_for() {
+    let Some(group) = Group::new(512) else { return };
+    let board = Board::new();
+    board.file("in", [0]);
+    board.library(
+        "plus.so",
+        "int converter(int in_s, char *in, int out_s, char *out) { out[0] = in[0] + 1; return 0; }",
+    );
+    let config = |count: u32, name: &str| {
+        format!(
+            "trikfs = {{}} for i = 1, {count} do trikfs['{name}' .. i] = {{ src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1, isolate = true, converter = 'plus.so' }} end"
+        )
+    };
+    let Some(m) = group.mount(board, &config(8, "n")) else {
+        return;
+    };
+    let before = processes::children(m.daemon());
+    assert_eq!(before.len(), 8);
+    for node in 1..=8 {
+        assert_eq!(m.read(&format!("n{node}/device")).unwrap()[0], 1);
+    }
+    let line = m.apply(&config(9, "n")).unwrap_err();
+    assert_eq!(
+        line,
+        "config refused: config:1: node n9: isolate: the configuration has 9 isolated nodes, each with a process that may take 64 MiB, and 512 MiB of memory have room for 8 of them; leave isolate away where you trust the code, or convert several values in one node"
+    );
+    assert_eq!(processes::children(m.daemon()), before);
+    assert_eq!(m.read("n8/device").unwrap()[0], 1);
+    // Nobody keeps processes of nodes that leave by an open file.
+    let mut kept = Vec::new();
+    for round in 0..4 {
+        let name = if round % 2 == 0 { "m" } else { "n" };
+        m.apply(&config(8, name)).unwrap();
+        kept.push(m.open(&format!("{name}1/device")));
+        eventually("eight processes", || {
+            processes::children(m.daemon()).len() == 8
+        });
+    }
+    assert_eq!(m.read("n8/device").unwrap()[0], 1);
+}
+
+#[test]
 fn rings_in_shared_memory_take_a_part_of_what_the_group_allows() {
     let Some(group) = Group::new(128) else { return };
     // A ring of such tuples takes some MiB, and all of them more than an eighth of 128.

@@ -11,6 +11,7 @@ mod calls;
 pub mod inner;
 mod memory;
 mod process;
+pub mod room;
 mod stage;
 mod words;
 
@@ -29,6 +30,7 @@ use process::{Lost, Running};
 use std::fs::File;
 use std::os::fd::AsRawFd;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use words::{Answer, Begun, Closed, Load, Loaded, Request, Sealed};
@@ -41,6 +43,8 @@ pub struct Isolated {
     life: Mutex<Life>,
     /// States whose file was closed while another one was busy.
     left: Mutex<Vec<Place>>,
+    /// The node has left the tree: no process is started for it any more.
+    is_over: AtomicBool,
 }
 
 /// Where the state of an open file is: in which of the processes, and its number there.
@@ -88,6 +92,7 @@ impl Isolated {
                 answer: process::room(),
             }),
             left: Mutex::default(),
+            is_over: AtomicBool::new(false),
         })
     }
 
@@ -168,12 +173,32 @@ impl Isolated {
         life.is_confined = is_confined;
         Ok(is_confined)
     }
+
+    /// Ends the process for good, also if a program still has files of the node open. One that is busy ends when it has answered.
+    fn retire(&self) {
+        self.is_over.store(true, Ordering::SeqCst);
+        if let Ok(mut life) = self.life.try_lock() {
+            life.running = None;
+        }
+    }
+
+    /// The end of a process that was busy when its node left the tree.
+    fn end_if_over(&self, life: &mut Life) {
+        if self.is_over.load(Ordering::SeqCst) {
+            life.running = None;
+        }
+    }
 }
 
 impl Apart {
     /// Whether there is a process at the moment.
     pub fn has_process(&self) -> bool {
         lock(&self.process.life).running.is_some()
+    }
+
+    /// The node has left the tree.
+    pub fn retire(&self) {
+        self.process.retire();
     }
 }
 

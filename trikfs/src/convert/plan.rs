@@ -41,6 +41,14 @@ impl Machine {
         }
     }
 
+    /// The node has left the tree.
+    pub(super) fn retire(&self) {
+        match self {
+            Self::Here(_) => {}
+            Self::Apart(apart) => apart.retire(),
+        }
+    }
+
     pub(super) fn open(&self, info: &shared::OpenInfo<'_>) -> Result<Code, Error> {
         match self {
             Self::Here(library) => {

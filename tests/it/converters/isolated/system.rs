@@ -114,3 +114,30 @@ assert fault() == '', fault()
         "{log}"
     );
 }
+
+#[test]
+fn more_isolated_nodes_than_any_computer_may_have_are_refused_and_the_former_ones_stay() {
+    let Some(m) = super::hostile() else { return };
+    m.read("bad/device").unwrap();
+    let process = super::process_of(&m);
+    let config = m.board().fill_in(CONFIG);
+    let many = |count: u32| {
+        format!("{config} local bad = trikfs.bad for i = 1, {count} do trikfs['n' .. i] = bad end")
+    };
+    let line = m.apply(&many(256)).unwrap_err();
+    assert!(
+        line.contains("isolate: the configuration has 257 isolated nodes"),
+        "{line}"
+    );
+    assert_eq!(super::process_of(&m), process);
+    assert_eq!(m.read("bad/device").unwrap()[0], b'A');
+    // `check` refuses it too.
+    m.board().file("many.lua", many(256));
+    let output = crate::trikfs(m.board(), &["check", "many.lua"], b"");
+    assert_eq!(output.code(), 1, "{}", output.stderr);
+    assert!(
+        output.stderr.contains("257 isolated nodes"),
+        "{}",
+        output.stderr
+    );
+}

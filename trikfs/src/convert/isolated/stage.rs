@@ -15,6 +15,7 @@ use crate::limits::{ISOLATED_BYTES, ISOLATED_LOG_LINES, ISOLATED_TUPLE_BYTES, IS
 use converter::{Conversion, Direction, Fault};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 impl Apart {
     /// Makes the converter's state for one open file and direction.
@@ -64,12 +65,24 @@ impl IsolatedStage {
         }
         let process = Arc::clone(&self.apart.process);
         let mut life = lock(&process.life);
-        let instance = self.placed(&mut life)?;
+        let outcome = self.convert_in(&mut life, input, output);
+        process.end_if_over(&mut life);
+        outcome
+    }
+
+    /// One tuple that fits into a message.
+    fn convert_in(
+        &mut self,
+        life: &mut Life,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> Result<Conversion, Error> {
+        let instance = self.placed(life)?;
         let request = Request::One {
             instance,
             tuple: input,
         };
-        let lost = match life.ask(&request, process.patience, false) {
+        let lost = match life.ask(&request, self.apart.process.patience, false) {
             Ok(One::Consumed) => return Ok(Conversion::Consumed),
             Ok(One::Produced(made)) if made.len() == output.len() => {
                 output.copy_from_slice(made);
@@ -79,7 +92,7 @@ impl IsolatedStage {
             Ok(One::Fault(why)) => return Err(said(why)),
             Err(lost) => lost,
         };
-        Err(self.lost(&mut life, &lost))
+        Err(self.lost(life, &lost))
     }
 
     /// As `NativeStage::convert_many`. Of a batch in which the process dies, what was converted before counts.
@@ -123,9 +136,24 @@ impl IsolatedStage {
         let tuples = fitting(input.len(), self.input_size);
         let room = fitting(output.len(), self.output_size);
         let input = &input[..tuples * self.input_size];
+        let output = &mut output[..room * self.output_size];
         let process = Arc::clone(&self.apart.process);
         let mut life = lock(&process.life);
-        let instance = match self.placed(&mut life) {
+        let outcome = self.batch_in(&mut life, input, output);
+        process.end_if_over(&mut life);
+        outcome
+    }
+
+    /// What fits into the shared memory.
+    fn batch_in(
+        &mut self,
+        life: &mut Life,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> (usize, usize, Option<Error>) {
+        let tuples = input.len() / self.input_size;
+        let room = output.len() / self.output_size;
+        let instance = match self.placed(life) {
             Ok(instance) => instance,
             Err(fault) => return (1, 0, Some(fault)),
         };
@@ -133,7 +161,7 @@ impl IsolatedStage {
         let request = Request::Many {
             instance,
             input_bytes: word(input.len()),
-            output_bytes: word(room * self.output_size),
+            output_bytes: word(output.len()),
         };
         if let Some(shared) = life.shared() {
             shared.put_input(input);
@@ -141,7 +169,7 @@ impl IsolatedStage {
         let counts = |taken: usize, made: usize| {
             (taken <= tuples && made <= room && made <= taken).then_some((taken, made))
         };
-        let lost = match life.ask(&request, process.patience, true) {
+        let lost = match life.ask(&request, self.apart.process.patience, true) {
             Ok(Many { taken, made, fault }) => match counts(taken as usize, made as usize) {
                 // A batch without a fault ends where the tuples or the room do.
                 Some((taken, made)) if fault.is_some() || taken == tuples || made == room => {
@@ -158,12 +186,15 @@ impl IsolatedStage {
             .and_then(|(taken, made)| counts(taken, made))
             .unwrap_or((0, 0));
         life.take_output(&mut output[..made * self.output_size]);
-        let fault = self.lost(&mut life, &lost);
+        let fault = self.lost(life, &lost);
         ((taken + 1).min(tuples), made, Some(fault))
     }
 
     /// The number of its state in the present process, which is started if there is none.
     fn placed(&mut self, life: &mut Life) -> Result<u32, Error> {
+        if self.apart.process.is_over.load(Ordering::SeqCst) {
+            return Err(Error::Stale);
+        }
         if !lock(&self.apart.process.left).is_empty() {
             self.apart.process.leave(life);
         }
