@@ -39,6 +39,8 @@ pub struct Engine {
     pub panics: Arc<Panics>,
     /// Called before and after an actuator is driven.
     on_driven: OnceLock<Box<dyn Fn() + Send + Sync>>,
+    /// Called after a param was changed.
+    on_params: OnceLock<Box<dyn Fn() + Send + Sync>>,
     parked: Mutex<HashSet<RequestId>>,
 }
 
@@ -57,6 +59,7 @@ impl Engine {
             kernel: OnceLock::new(),
             panics: Arc::default(),
             on_driven: OnceLock::new(),
+            on_params: OnceLock::new(),
             parked: Mutex::default(),
         }))
     }
@@ -85,6 +88,18 @@ impl Engine {
     /// An actuator is driven.
     pub fn driven(&self) {
         if let Some(call) = self.on_driven.get() {
+            call();
+        }
+    }
+
+    /// What is called when a param was changed; the first one counts.
+    pub fn on_params(&self, call: Box<dyn Fn() + Send + Sync>) {
+        let _ = self.on_params.set(call);
+    }
+
+    /// A param was changed, with no lock held.
+    pub fn params_changed(&self) {
+        if let Some(call) = self.on_params.get() {
             call();
         }
     }

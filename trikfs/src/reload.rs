@@ -11,7 +11,6 @@ use crate::convert::{Recipe, Workshop, isolated};
 use crate::engine::Engine;
 use crate::events::lock;
 use crate::fs::{Forest, OpenFiles};
-use crate::guardian::actions::RestAction;
 use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
 use crate::limits;
@@ -30,6 +29,10 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, Weak};
 use std::time::Duration;
+
+mod rest;
+
+use rest::{Noted, Rests};
 
 /// What the reloader works with for the life of the mount.
 pub struct Setup {
@@ -61,6 +64,7 @@ pub struct Reloader {
     maker: StateMaker,
     setup_runner: Arc<SetupRunner>,
     state: Mutex<State>,
+    rests: Arc<Rests>,
     one_at_a_time: Mutex<()>,
     work: Sender<Job>,
 }
@@ -104,12 +108,16 @@ impl Reloader {
             copies: CopyNames::new(),
         };
         let maker = StateMaker::start()?;
+        let rests = Rests::new(setup.ledger.clone(), setup.engine.log.clone());
+        let renewed = rests.clone();
+        setup.engine.on_params(Box::new(move || renewed.renew()));
         let root = setup.loader.device_root.clone();
         Ok(Arc::new(Self {
             setup_runner: SetupRunner::new(setup.engine.clone(), root),
             setup,
             maker,
             state: Mutex::new(state),
+            rests,
             one_at_a_time: Mutex::default(),
             work,
         }))
@@ -265,7 +273,7 @@ impl Reloader {
             progress(&line);
             problems.push(line);
         }
-        let rest = self.rest_actions(&nodes, &mut problems);
+        let rest = Rests::of(&nodes, &mut problems);
         // Nothing fails from here on: what `setup` cannot do is only told.
         self.setup_runner.run(&loaded.config.setup);
         for node in &kept {
@@ -277,7 +285,7 @@ impl Reloader {
         let (copies, remarks) = copies.finish();
         problems.extend(remarks);
         self.note_copies(&loaded.config, copies);
-        self.put_in_force((nodes, aliases), &before, bytes, pool, &rest);
+        self.put_in_force((nodes, aliases), &before, bytes, pool, rest);
         for line in problems {
             setup.engine.log.line(&line);
         }
@@ -297,29 +305,13 @@ impl Reloader {
         state.copies = loaded;
     }
 
-    fn rest_actions(&self, nodes: &[Arc<Node>], problems: &mut Vec<String>) -> Vec<RestAction> {
-        let mut actions = Vec::new();
-        for node in nodes.iter().filter(|node| node.description.rest.is_some()) {
-            match node.rest_action() {
-                Ok(Some(action)) if action.can_be_noted() => actions.push(action),
-                Ok(Some(_)) => {
-                    let what = "rest: the guardian cannot do it when the daemon is dead: the path is too long";
-                    problems.push(node.problem(what).to_string());
-                }
-                Ok(None) => {}
-                Err(error) => problems.push(node.problem(&format!("rest: {error}")).to_string()),
-            }
-        }
-        actions
-    }
-
     fn put_in_force(
         &self,
         (nodes, aliases): (Vec<Arc<Node>>, &[Alias]),
         before: &Arc<Tree>,
         bytes: Vec<u8>,
         pool: Option<Arc<crate::convert::lua::StatePool>>,
-        rest: &[RestAction],
+        rest: Vec<Noted>,
     ) {
         let setup = &self.setup;
         if before.nodes().is_empty() {
@@ -372,8 +364,8 @@ impl Reloader {
             self.warn_of("the configuration", ledger.set_config(&self.in_force()));
             let copies = copies::encode(&lock(&self.state).copies);
             self.warn_of("which libraries are loaded", ledger.set_copies(&copies));
-            self.warn_of("what brings the actuators to rest", ledger.set_rest(rest));
         }
+        self.rests.put_in_force(rest);
     }
 
     /// Brings the sample bus up to date but for new nodes, whose rings come with their start.

@@ -4,6 +4,25 @@ use crate::mount_on;
 use harness::{Board, Mount, eventually, processes};
 use nix::sys::signal::Signal;
 
+/// Takes the param `zero` away; makes nothing with 77.
+const SHIFT: &str = r#"
+#include "trikfs_converter.h"
+#include <stdlib.h>
+static int open_it(const trikfs_open_info *info, void **state)
+{
+    unsigned char *zero = calloc(1, 1);
+    if (zero) *zero = (unsigned char)info->params[0].value;
+    *state = zero;
+    return !zero;
+}
+static int down(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
+{ if (*(unsigned char *)state == 77) abort(); out[0] = in[0] - *(unsigned char *)state; return in_size != out_size; }
+static const trikfs_converter only = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "down", 0, 1, 1, open_it, down, free, 0 };
+static const trikfs_converter *const all[] = { &only };
+static const trikfs_library library = { TRIKFS_ABI_VERSION, sizeof(trikfs_library), 1, all };
+TRIKFS_EXPORT const trikfs_library *trikfs_library_entry(void) { return &library; }
+"#;
+
 const ROBOT: &str = "trikfs = {
   motor = { src = '$DIR/motor', input_tuple_size = 2, format = 'i8 speed, u8 mode', rest = { 0, 7 } },
   gyro = { src = fake{ data = 'abcd', period_ms = 0, loop = true }, input_tuple_size = 4, poll_ms = 5 },
@@ -293,4 +312,61 @@ fn after_a_crash_the_library_in_force_is_loaded_whatever_its_file_contains() {
     assert_eq!(m.read("n/bin_data").unwrap(), [7]);
     crash();
     assert_eq!(m.read("n/bin_data").unwrap(), [7]);
+}
+
+/// What a motor that is a named pipe has got since it was asked last.
+fn got(pipe: &mut std::fs::File) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // It never ends; what it has is read before it says that there is no more.
+    let _ = std::io::Read::read_to_end(pipe, &mut bytes);
+    bytes
+}
+
+#[test]
+fn after_a_kill_the_rest_is_that_of_the_params_of_now_whoever_converts_it() {
+    let lua = "write_converter = function(a_s, a, b_s, b) assert(params.zero ~= 77) ba.set(b, 0, (ba.get(a, 0) - params.zero) % 256) end";
+    let isolated = "isolate = true, write_converter = 'shift.so#down'";
+    for converter in [lua, isolated] {
+        let board = Board::new();
+        let mut motor = board.pipe("motor");
+        board.library("shift.so", SHIFT);
+        // The arm has its rest through the converter of the motor.
+        let config = format!(
+            "trikfs = {{ motor = {{ src = '$DIR/motor', input_tuple_size = 1, format = 'u8 power', rest = 50, params = {{ zero = 1 }}, {converter} }},
+               arm = {{ src = 'trikfs:motor', input_tuple_size = 1, format = 'u8 power', rest = 60, write_converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0)) end }} }}"
+        );
+        let Some(m) = mount_on(board, &config) else {
+            return;
+        };
+        got(&mut motor);
+        m.write("motor/params/zero", "3").unwrap();
+        // Of one that a converter makes no rest of, what is known stays.
+        let odd = m.write("motor/params/zero", "77");
+        if converter == isolated {
+            assert_eq!(odd.unwrap_err().raw_os_error(), Some(libc::EIO));
+            assert_eq!(m.text("motor/params/zero"), "3\n");
+        } else {
+            odd.unwrap();
+            let log = m.log();
+            assert_eq!(
+                log.matches("the guardian keeps the former one").count(),
+                2,
+                "{log}"
+            );
+            m.write("motor/params/zero", "3").unwrap();
+        }
+        m.write("motor/value", "30").unwrap();
+        assert_eq!(got(&mut motor), [27]);
+        let daemon = m.daemon();
+        processes::signal(daemon, Signal::SIGKILL);
+        let mut rest = Vec::new();
+        // The next daemon has the params of the configuration, and lets them rest once more.
+        eventually("rest by guardian and daemon", || {
+            rest.extend(got(&mut motor));
+            rest.len() >= 4
+        });
+        rest[..2].sort_unstable();
+        rest[2..].sort_unstable();
+        assert_eq!(rest, [47, 57, 49, 59], "{converter}");
+    }
 }

@@ -6,7 +6,6 @@ use super::OpenFile;
 use super::control::TextFile;
 use super::ownership::Ownership;
 use crate::errno::Error;
-use crate::events::lock;
 use crate::node::Node;
 use crate::text;
 use crate::transport::{Outcome, Transfer};
@@ -85,17 +84,7 @@ impl OpenFile for ParamFile {
         let _inside = self.node.quarantine.enter()?;
         // It changes what writes mean.
         let _admitted = Ownership::default().admit(&self.node, request.caller)?;
-        let _turn = lock(&self.node.driving.params_turn);
-        let before = self.node.recipe.param(name);
-        let changed = self.node.recipe.set_param(name, value);
-        let changed = changed.and_then(|()| {
-            // What the number makes of the rest is known before anybody drives with it.
-            self.node.renew_rest().inspect_err(|_| {
-                if let Some(before) = before {
-                    let _ = self.node.recipe.set_param(name, before);
-                }
-            })
-        });
+        let changed = self.node.set_param(name, value);
         if let Err(error) = &changed {
             self.node.engine.log.line(&format!(
                 "{}: params/{name} stays as it is: {error}",

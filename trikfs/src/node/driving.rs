@@ -43,7 +43,7 @@ pub struct Driving {
     /// The rest as the device gets it, if a converter on the way there is not in this process, and of which params it is.
     known_rest: Mutex<Option<(RestAction, u32)>>,
     /// One param after the other is changed, with what follows from it.
-    pub params_turn: Mutex<()>,
+    pub(super) params_turn: Mutex<()>,
 }
 
 impl Driving {

@@ -98,7 +98,7 @@ impl Node {
     }
 
     /// Another number after each change of a param of this node or one that a write passes on its way to the device.
-    fn params_on_the_way(&self) -> u32 {
+    pub fn params_on_the_way(&self) -> u32 {
         let own = self.recipe.generation();
         let further = self.written_node().map(|other| other.params_on_the_way());
         own.wrapping_add(further.unwrap_or(0))
@@ -119,11 +119,32 @@ impl Node {
         }
     }
 
-    /// A param has changed, and the rest may be other bytes from here on.
+    /// Changes a param, with what follows from it for the rest of this node and of all that write through it.
     ///
     /// # Errors
-    /// It cannot be converted.
-    pub fn renew_rest(self: &Arc<Self>) -> Result<(), Error> {
+    /// The reason of a library that refuses the number, or of an isolated converter that makes no rest of it; then
+    /// everything is as it was.
+    pub fn set_param(self: &Arc<Self>, name: &str, value: f64) -> Result<(), Error> {
+        let turn = lock(&self.driving.params_turn);
+        let (former, params) = (self.recipe.param(name), self.params_on_the_way());
+        let known = self.driving.known_rest(params);
+        self.recipe.set_param(name, value)?;
+        // What the number makes of the rest is known before anybody drives with it.
+        let renewed = self.renew_rest();
+        if let (Err(_), Some(former)) = (&renewed, former) {
+            self.recipe.restore_param(name, former);
+            if let Some(action) = known {
+                // Two changes further it is the same.
+                self.driving.keep_rest(&action, params.wrapping_add(2));
+            }
+        }
+        drop(turn);
+        self.engine.params_changed();
+        renewed
+    }
+
+    /// A param has changed, and the rest may be other bytes from here on.
+    fn renew_rest(self: &Arc<Self>) -> Result<(), Error> {
         match self.description.rest.is_some() && self.is_apart() {
             true => self.convert_rest().map(drop),
             false => Ok(()),
