@@ -13,12 +13,15 @@ use crate::newest::{self, Needed};
 use crate::node::Node;
 use crate::writer::Writer;
 use converter::Direction;
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 /// The regulator of one node.
 pub struct Regulation {
     actuator: Arc<Node>,
     order: Mutex<Option<Order>>,
+    /// Nothing is to be held any more, which the one that works at the order sees when he has done so.
+    is_released: AtomicBool,
     owed: Mutex<Option<Owed>>,
 }
 
@@ -30,6 +33,26 @@ struct Owed {
     writes: u32,
     /// Each sample is an attempt.
     _needed: Needed,
+}
+
+/// The order, for one who works at it: what is released meanwhile is dropped with this.
+struct Slot<'a> {
+    order: MutexGuard<'a, Option<Order>>,
+    is_released: &'a AtomicBool,
+}
+
+impl Slot<'_> {
+    fn drop_released(&mut self) {
+        if self.is_released.swap(false, Ordering::SeqCst) {
+            *self.order = None;
+        }
+    }
+}
+
+impl Drop for Slot<'_> {
+    fn drop(&mut self) {
+        self.drop_released();
+    }
 }
 
 struct Order {
@@ -55,6 +78,7 @@ impl Regulation {
         Self {
             actuator,
             order: Mutex::default(),
+            is_released: AtomicBool::new(false),
             owed: Mutex::default(),
         }
     }
@@ -67,19 +91,19 @@ impl Regulation {
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
         // The first step is made with a sample of now, also if nobody needed any before.
         let _needed = node.sampling.newest.needed();
-        let mut slot = lock(&self.order);
+        let mut slot = self.slot();
         let measured = node.sampling.newest.latch().sample(newest::too_old(node));
         let turn = self.actuator.take_turn();
-        let before = match slot.as_mut() {
+        let before = match slot.order.as_mut() {
             Some(order) if self.is_mine(order, node) => {
                 Some(std::mem::replace(&mut order.target, target.to_vec()))
             }
             _ => {
-                *slot = Some(self.begin(node, target)?);
+                *slot.order = Some(self.begin(node, target)?);
                 None
             }
         };
-        let Some(order) = slot.as_mut() else {
+        let Some(order) = slot.order.as_mut() else {
             return Ok(());
         };
         let outcome = match measured {
@@ -102,7 +126,7 @@ impl Regulation {
                 Err(error)
             }
             (Err(error), before) => {
-                *slot = None;
+                *slot.order = None;
                 drop(slot);
                 // What this regulator did not drive yet is not to be touched.
                 if before.is_some() {
@@ -133,9 +157,22 @@ impl Regulation {
         order.writes == self.writes() && order.generation == node.driving.lease_generation()
     }
 
-    /// Nothing is held any more; the driven node stays as it is.
+    fn slot(&self) -> Slot<'_> {
+        let mut slot = Slot {
+            order: lock(&self.order),
+            is_released: &self.is_released,
+        };
+        slot.drop_released();
+        slot
+    }
+
+    /// Nothing is held any more; the driven node stays as it is. Waits for nobody: a step may hang in a converter.
     pub fn release(&self) {
-        *lock(&self.order) = None;
+        match self.order.try_lock() {
+            Ok(mut order) => *order = None,
+            Err(TryLockError::Poisoned(poisoned)) => *poisoned.into_inner() = None,
+            Err(TryLockError::WouldBlock) => self.is_released.store(true, Ordering::SeqCst),
+        }
     }
 
     /// Nothing is held any more, and the driven node comes to rest.
@@ -147,19 +184,19 @@ impl Regulation {
     /// The feedback was measured: one step of the law.
     pub fn step(&self, node: &Node, measured: &[u8]) {
         self.settle();
-        let mut slot = lock(&self.order);
-        let Some(order) = slot.as_mut() else {
+        let mut slot = self.slot();
+        let Some(order) = slot.order.as_mut() else {
             return;
         };
         let turn = self.actuator.take_turn();
         if !self.is_mine(order, node) {
-            *slot = None;
+            *slot.order = None;
             return;
         }
         match order.step(node, measured) {
             Ok(wrote) => order.count(wrote),
             Err(error) => {
-                *slot = None;
+                *slot.order = None;
                 drop(turn);
                 drop(slot);
                 self.stop(node, &error);
@@ -169,7 +206,8 @@ impl Regulation {
 
     /// The feedback failed: without it nothing can be held.
     pub fn fail(&self, node: &Node, error: &Error) {
-        if lock(&self.order).take().is_some() {
+        let order = self.slot().order.take();
+        if order.is_some() {
             self.stop(node, error);
         } else {
             self.settle();

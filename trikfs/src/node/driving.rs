@@ -17,7 +17,7 @@ use crate::regulation::Regulation;
 use crate::sample_bus::Ring;
 use config::description::NodeDescription;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 /// What a write to one node has to do with.
 pub struct Driving {
@@ -150,11 +150,16 @@ impl Driving {
 
     /// A tuple, as it was written, went to the device.
     pub fn went(&self, tuple: &[u8]) {
-        self.writes.fetch_add(1, Ordering::Relaxed);
-        *lock(&self.lost) = None;
+        self.passed();
         if let Some(ring) = &mut *lock(&self.ring) {
             ring.publish(Stamp::now(), tuple);
         }
+    }
+
+    /// A tuple went to the device, and as what it would have been written here is not known.
+    fn passed(&self) {
+        self.writes.fetch_add(1, Ordering::Relaxed);
+        *lock(&self.lost) = None;
     }
 
     /// From now on everything that goes to the device is published in this ring, or in none.
@@ -177,7 +182,19 @@ impl Driving {
     }
 }
 
+/// Another one has the turn.
+pub(super) struct Taken;
+
 impl Node {
+    /// A tuple went to the device past the converters and nodes on its way: those see the write all the same.
+    pub(super) fn went(&self, tuple: &[u8]) {
+        self.driving.went(tuple);
+        let driven = self.driven();
+        if !std::ptr::eq(driven, self) {
+            driven.driving.passed();
+        }
+    }
+
     /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
     pub fn writes(&self) -> u32 {
         self.driven().driving.writes.load(Ordering::Relaxed)
@@ -207,5 +224,18 @@ impl Node {
         let driving = &self.driven().driving;
         let is_regulated = driving.is_regulated.load(Ordering::Relaxed);
         is_regulated.then(|| lock_patiently(&driving.turn))
+    }
+
+    /// The same, if nobody has it.
+    pub(super) fn take_turn_at_once(&self) -> Result<Option<MutexGuard<'_, ()>>, Taken> {
+        let driving = &self.driven().driving;
+        if !driving.is_regulated.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        match driving.turn.try_lock() {
+            Ok(turn) => Ok(Some(turn)),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(Some(poisoned.into_inner())),
+            Err(TryLockError::WouldBlock) => Err(Taken),
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! is the business of others.
 
 use super::Node;
+use super::driving::Taken;
 use crate::device::kinds;
 use crate::errno::Error;
 use crate::events::lock;
@@ -86,10 +87,25 @@ impl Node {
         }
         let sink = kinds::open_sink(&action.sink, &self.source.around);
         let mut sink = sink.inspect_err(|error| self.report(error))?;
-        let _turn = self.take_turn();
-        sink.write(&action.tuple, true)?;
-        self.driving.went(tuple);
-        Ok(())
+        let mut write = || {
+            sink.write(&action.tuple, true)?;
+            self.went(tuple);
+            Ok(())
+        };
+        let _turn = match self.take_turn_at_once() {
+            Ok(turn) => turn,
+            Err(Taken) => {
+                // The one that has it may hang in a converter. The actuator rests at once, and again if that one writes after all.
+                write()?;
+                let writes = self.writes();
+                let turn = self.take_turn();
+                if self.writes() == writes {
+                    return Ok(());
+                }
+                turn
+            }
+        };
+        write()
     }
 
     /// The rest as the device gets it, of the params of now.

@@ -3,13 +3,21 @@
 use super::{process_of, signal};
 use crate::mount_on;
 use harness::wait::eventually;
-use harness::{Board, Mount};
+use harness::{Board, Mount, processes};
 use nix::sys::signal::Signal;
 
-/// Adds the param `zero` or takes it away; crashes at 99.
+/// Adds the param `zero` or takes it away; crashes at 99, hangs at 98, and is slow at 97.
 const SHIFT: &str = r#"
 #include "trikfs_converter.h"
 #include <stdlib.h>
+#include <time.h>
+static void work(long ms)
+{
+    struct timespec from, now;
+    clock_gettime(CLOCK_MONOTONIC, &from);
+    do clock_gettime(CLOCK_MONOTONIC, &now);
+    while ((now.tv_sec - from.tv_sec) * 1000 + (now.tv_nsec - from.tv_nsec) / 1000000 < ms);
+}
 static int open_it(const trikfs_open_info *info, void **state)
 {
     signed char *zero = calloc(1, 1);
@@ -21,7 +29,7 @@ static int open_it(const trikfs_open_info *info, void **state)
 static int up(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
 { out[0] = in[0] + *(signed char *)state; return in_size != out_size; }
 static int down(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
-{ if (in[0] == 99) __builtin_trap(); out[0] = in[0] - *(signed char *)state; return in_size != out_size; }
+{ if (in[0] == 99) __builtin_trap(); while (in[0] == 98) { } if (in[0] == 97) work(400); out[0] = in[0] - *(signed char *)state; return in_size != out_size; }
 static const trikfs_converter first = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "up", 0, 1, 1, open_it, up, free, 0 };
 static const trikfs_converter second = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "down", 0, 1, 1, open_it, down, free, 0 };
 static const trikfs_converter *const all[] = { &first, &second };
@@ -31,7 +39,10 @@ TRIKFS_EXPORT const trikfs_library *trikfs_library_entry(void) { return &library
 
 /// A motor whose device has `zero` less than what is written; `more` are further fields and nodes.
 fn motor(more: &str) -> Option<(Mount, String)> {
-    let board = Board::new();
+    motor_on(Board::new(), more)
+}
+
+fn motor_on(board: Board, more: &str) -> Option<(Mount, String)> {
     board.file("motor", [0; 1]);
     board.library("shift.so", SHIFT);
     let config = format!(
@@ -120,4 +131,65 @@ fn the_guardian_rests_an_actuator_whose_process_was_dead_at_the_last_configurati
     assert_eq!(device(&m), 29);
     signal(m.daemon(), Signal::SIGKILL);
     eventually("rest by the guardian", || device(&m) == 4);
+}
+
+/// A motor that a regulator drives by what is ordered of it; `lamp` is another actuator.
+const REGULATED: &str = "budget_us = 2000000, rest = 5 }, lamp = { src = attribute{ path = '$DIR/lamp' }, input_tuple_size = 1, format = 'u8 light', rest = 7 },
+   speed = { src = regulator{ feedback = 'trikfs:lamp', actuator = 'trikfs:motor' }, poll_ms = 20, format = 'u8 speed',
+     converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0)) end,
+     write_converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0)) end }";
+
+#[test]
+fn a_regulated_actuator_rests_at_once_while_a_write_to_it_hangs_in_its_converter() {
+    // By a program, and by the regulator, which hangs in a step; of a write that is only slow the rest has the last word.
+    for (node, value, hangs) in [
+        ("motor/value", "98", true),
+        ("speed/value", "98", true),
+        ("motor/value", "97", false),
+        ("speed/value", "97", false),
+    ] {
+        let board = Board::new();
+        board.file("lamp", [0; 1]);
+        let Some((m, _)) = motor_on(board, REGULATED) else {
+            return;
+        };
+        m.write("lamp/value", "90").unwrap();
+        m.write("speed/value", "30").unwrap();
+        eventually("a step", || device(&m) == 29);
+        let process = process_of(&m);
+        std::thread::scope(|scope| {
+            let busy = scope.spawn(|| m.write(node, value));
+            // Longer than a step of the regulator.
+            let mut looks = 0;
+            eventually("it works", || {
+                looks = if processes::is_asleep(process) {
+                    0
+                } else {
+                    looks + 1
+                };
+                looks > 5
+            });
+            let stop = scope.spawn(|| m.write("stop", "1"));
+            eventually("rest", || {
+                device(&m) == 4 && m.board().content("lamp") == [7]
+            });
+            if hangs {
+                assert!(!busy.is_finished(), "{node}: its rest waits for nobody");
+            }
+            stop.join().unwrap().unwrap();
+            assert_eq!(device(&m), 4, "{node} {value}");
+            assert_eq!(busy.join().unwrap().is_err(), hangs, "{node} {value}");
+        });
+        // Each sample would be a step.
+        for light in [55, 56] {
+            m.board().file("lamp", [light]);
+            let text = format!("{light}\n");
+            let shown = || {
+                m.read("speed/value")
+                    .is_ok_and(|got| got == text.as_bytes())
+            };
+            eventually("a sample", shown);
+        }
+        assert_eq!(device(&m), 4, "{node} {value}: it stays at rest");
+    }
 }
