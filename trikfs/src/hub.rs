@@ -259,7 +259,11 @@ impl Hub {
         if again {
             // The old opening stays until the new one is there: what the next writer of a FIFO sends
             // would be lost while nobody has it open.
-            self.reopen(node, inner);
+            if let Err(error) = self.reopen(node, inner) {
+                // At one stroke: the end comes before the loss for everybody.
+                self.each(|subscription| subscription.end_and_lose(&error));
+                return;
+            }
         } else {
             inner.watch = None;
             inner.stream = None;
@@ -288,25 +292,34 @@ impl Hub {
         })
     }
 
-    fn reopen(&self, node: &Arc<Node>, inner: &mut Inner) {
-        match node.open_stream() {
+    /// Opens the source again, or tries it later; what to tell the readers then is the caller's matter.
+    fn reopen(&self, node: &Arc<Node>, inner: &mut Inner) -> Result<(), Error> {
+        let opened = node.open_stream();
+        inner.watch = None;
+        match opened {
             Ok(stream) => {
-                inner.watch = None;
                 inner.stream = Some(stream);
                 self.listen(inner);
                 self.each(Subscription::recover);
+                Ok(())
             }
             Err(error) => {
-                inner.watch = None;
                 inner.stream = None;
-                self.lose(node, &error);
+                self.try_later(node, &error);
+                Err(error)
             }
         }
     }
 
     fn lose(&self, node: &Arc<Node>, error: &Error) {
-        node.report(error);
+        self.try_later(node, error);
         self.each(|subscription| subscription.lose(error));
+    }
+
+    /// Reported before a reader is told, who may ask for the fault at once.
+
+    fn try_later(&self, node: &Arc<Node>, error: &Error) {
+        node.report(error);
         self.wake_at(
             node,
             Instant::now() + Duration::from_millis(limits::REOPEN_MS),
@@ -374,8 +387,8 @@ impl Due for Hub {
         let is_lost = {
             let mut inner = lock(&self.inner);
             let is_lost = inner.stream.is_none() && !inner.is_over;
-            if is_lost {
-                self.reopen(&node, &mut inner);
+            if is_lost && let Err(error) = self.reopen(&node, &mut inner) {
+                self.each(|subscription| subscription.lose(&error));
             }
             is_lost
         };
@@ -441,6 +454,12 @@ impl Subscription {
 
     fn lose(&self, error: &Error) {
         lock(&self.queue).lost = Some(error.clone());
+    }
+
+    fn end_and_lose(&self, error: &Error) {
+        let mut queue = lock(&self.queue);
+        queue.ended = true;
+        queue.lost = Some(error.clone());
     }
 
     fn recover(&self) {
