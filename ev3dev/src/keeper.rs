@@ -354,15 +354,15 @@ fn watch_keeper(keeper: u32, view: &Arc<View>) -> io::Result<()> {
                 continue;
             }
             let why = format!("the process that keeps the mount ({keeper}) was stopped");
+            if let Ok(keeper) = i32::try_from(keeper) {
+                // First, because a device may hang. One that has ended is told of by the kernel.
+                let _ = kill(Pid::from_raw(keeper), Signal::SIGCONT);
+            }
             let rested = match view.rest(&why) {
                 true => "motors were brought to rest, and ",
                 false => "",
             };
             complain(&format!("{why}: {rested}it was told to go on"));
-            if let Ok(keeper) = i32::try_from(keeper) {
-                // One that has ended is told of by the kernel.
-                let _ = kill(Pid::from_raw(keeper), Signal::SIGCONT);
-            }
         }
     };
     let thread = thread::Builder::new().name("oversight".to_owned());

@@ -100,13 +100,14 @@ fn out_of_reach(error: Error) -> Error {
 impl Device for Servo {
     fn rest(&self, _why: &str) -> bool {
         let mut work = lock(&self.work);
-        // Whatever comes of the write: closed, the tree has it.
-        let is_driven = work.value.take().is_some();
-        is_driven
-            && self
-                .tree
-                .write(&format!("{}/power", self.node), "0")
-                .is_ok()
+        let is_driven = work.value.is_some();
+        let rests = || self.tree.write(&format!("{}/power", self.node), "0");
+        let is_at_rest = is_driven && rests().is_ok();
+        if is_at_rest {
+            // One that did not rest does so when this process ends, while its file is open.
+            work.value = None;
+        }
+        is_at_rest
     }
 
     fn attributes(&self) -> &'static [Attribute] {

@@ -106,12 +106,12 @@ pub const RETRY_MS: u64 = 20;
 pub const STUCK_MS: u32 = 2_000;
 /// Operations inside one node that may be late at the same time before others are refused.
 pub const LATE_PER_NODE_MAX: usize = 4;
-/// Milliseconds that another one waits for those to come out, while they have not been inside for as long themselves.
+/// Milliseconds that another one waits for a place, if one of those inside began no longer ago than that.
 pub const CROWDED_PATIENCE_MS: u32 = 20;
 /// How often it looks, beside being woken.
 pub const CROWDED_LOOK: Duration = Duration::from_millis(1);
 /// Operations that may wait so for one node: each holds a thread.
-pub const CROWDED_PER_NODE_MAX: u32 = 12;
+pub const CROWDED_PER_NODE_MAX: u32 = 6;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;
@@ -211,8 +211,8 @@ pub const ISOLATED_NODES_LEAST: usize = 8;
 pub const ISOLATED_NODES_MOST: usize = 256;
 /// Nodes that the line names which tells that the kernel cannot confine isolated converters.
 pub const ISOLATED_NODES_NAMED: usize = 8;
-/// Bytes of memory that all its states may take together.
-pub const ISOLATED_DATA_BYTES: libc::rlim_t = 64 << 20;
+/// MiB of memory that all its states may take together.
+pub const ISOLATED_DATA_MIB: u32 = 64;
 /// Bytes of addresses beside those of the program and that memory: libraries, and what no limit of data counts.
 pub const ISOLATED_LIBRARY_BYTES: libc::rlim_t = 64 << 20;
 /// Pause before another process is started after a second death; it doubles with each,
@@ -237,8 +237,11 @@ pub const PANIC_WORDS_MAX: usize = 240;
 pub const GUARDIAN_LOOK_MS: u64 = 400;
 /// Time from the end of a daemon's lifeline to its end, which takes a moment; callers wait meanwhile.
 pub const REAP_PATIENCE: Duration = Duration::from_millis(5);
-/// Time that a dead daemon may still hang once its connection is cut off. Actuators are at rest by then.
+/// Time that a dead daemon may still hang once its connection is cut off. Actuators are at rest by then. All that a guardian
+/// waits for at the end is less than what a service manager gives it ([`GRACE_MS`], this, [`FIRST_REST`], [`REST_MS_MAX`]).
 pub const CUT_OFF_PATIENCE: Duration = Duration::from_secs(2);
+/// Time for the actuators before the last thread of a dead daemon has ended: one that hangs has more the second time.
+pub const FIRST_REST: Duration = Duration::from_secs(1);
 /// Bytes that the guardian gives back when the daemon has died: for the threads that bring actuators to rest and what they open.
 pub const RESERVE_BYTES: usize = 256 << 10;
 /// Pause between two looks whether it has ended.

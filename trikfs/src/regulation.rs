@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 pub struct Regulation {
     actuator: Arc<Node>,
     order: Mutex<Option<Order>>,
-    /// Nothing is to be held any more, which the one that works at the order sees when he has done so.
+    /// Nothing is to be held any more, which the one that works at the order sees when it has done so.
     is_released: AtomicBool,
     owed: Mutex<Option<Owed>>,
 }
@@ -107,7 +107,7 @@ impl Regulation {
             return Ok(());
         };
         let outcome = match measured {
-            Ok(Some(sample)) => order.step(node, &sample.tuple),
+            Ok(Some(sample)) => order.step(node, &sample.tuple, slot.is_released),
             // The first sample makes the first step.
             Ok(None) => Ok(false),
             Err(error) => Err(error),
@@ -193,7 +193,7 @@ impl Regulation {
             *slot.order = None;
             return;
         }
-        match order.step(node, measured) {
+        match order.step(node, measured, slot.is_released) {
             Ok(wrote) => order.count(wrote),
             Err(error) => {
                 *slot.order = None;
@@ -263,8 +263,13 @@ impl Order {
         self.writes = self.writes.wrapping_add(wrote.into());
     }
 
-    /// True if the driven node was written: a law may give nothing.
-    fn step(&mut self, node: &Node, measured: &[u8]) -> Result<bool, Error> {
+    /// True if the driven node was written: a law may give nothing, or take so long that the order is released meanwhile.
+    fn step(
+        &mut self,
+        node: &Node,
+        measured: &[u8],
+        is_released: &AtomicBool,
+    ) -> Result<bool, Error> {
         let now = Stamp::now();
         let interval_us = self.before.map_or(0, |before| {
             u32::try_from(now.0.saturating_sub(before.0) / 1000).unwrap_or(u32::MAX)
@@ -280,9 +285,10 @@ impl Order {
         if let Some(error) = batch.fault {
             return Err(error);
         }
-        if batch.produced > 0 {
+        let writes = batch.produced > 0 && !is_released.load(Ordering::SeqCst);
+        if writes {
             self.writer.write_whole(&self.output, true)?;
         }
-        Ok(batch.produced > 0)
+        Ok(writes)
     }
 }

@@ -4,6 +4,7 @@
 //! Knows no node.
 
 use crate::clock::coarse_ms;
+use crate::crew;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits::{
@@ -86,46 +87,43 @@ impl Quarantine {
 
     fn look(&self) -> Result<Result<Inside<'_>, Full>, Error> {
         let now_ms = coarse_ms().max(1);
-        let mut mine = None;
         let mut full = Full::Late;
         for place in &self.began_ms {
             let since_ms = place.load(Ordering::Acquire);
             let for_ms = now_ms.wrapping_sub(since_ms);
             // A number of the other half is of an operation that began after `now_ms` was taken.
             let is_newer = for_ms >= u32::MAX / 2;
-            if since_ms == 0 {
-                if mine.is_none() {
-                    let (acq_rel, relaxed) = (Ordering::AcqRel, Ordering::Relaxed);
-                    let taken = place.compare_exchange(0, now_ms, acq_rel, relaxed);
-                    // Somebody was quicker, just now.
-                    full = Full::Passing;
-                    mine = taken.is_ok().then_some(Inside {
-                        quarantine: self,
-                        place,
-                    });
-                }
-            } else if for_ms > self.limit_ms && !is_newer {
+            if since_ms != 0 && for_ms > self.limit_ms && !is_newer {
                 return Err(Error::Quarantined { for_ms });
-            } else if for_ms <= CROWDED_PATIENCE_MS || is_newer {
+            }
+            if since_ms == 0 || for_ms <= CROWDED_PATIENCE_MS || is_newer {
                 full = Full::Passing;
             }
         }
-        Ok(mine.ok_or(full))
+        let (acq_rel, relaxed) = (Ordering::AcqRel, Ordering::Relaxed);
+        for place in &self.began_ms {
+            if place.compare_exchange(0, now_ms, acq_rel, relaxed).is_ok() {
+                let quarantine = self;
+                return Ok(Ok(Inside { quarantine, place }));
+            }
+        }
+        Ok(Err(full))
     }
 
     /// A place that becomes free soon, among not too many who wait for one.
     fn wait(&self, patience: Duration) -> Result<Inside<'_>, Error> {
+        crew::give_way();
         let until = Instant::now() + patience;
         let _place = Waiting::begin(&self.waiting)?;
-        let mut queue = lock(&self.queue);
         loop {
             match self.look()? {
                 Ok(inside) => return Ok(inside),
                 Err(Full::Passing) if Instant::now() < until => {}
                 Err(Full::Passing | Full::Late) => return Err(crowded()),
             }
-            let woken = self.is_free.wait_timeout(queue, CROWDED_LOOK);
-            queue = woken.unwrap_or_else(std::sync::PoisonError::into_inner).0;
+            // A place that became free since the look is seen by the next one.
+            let queue = lock(&self.queue);
+            let _woken = self.is_free.wait_timeout(queue, CROWDED_LOOK);
         }
     }
 }
@@ -212,13 +210,20 @@ mod tests {
     #[test]
     fn a_caller_is_refused_at_once_when_all_are_late() {
         let quarantine = quarantine();
-        let late = coarse_ms().wrapping_sub(CROWDED_PATIENCE_MS + 100).max(1);
+        let began = |for_ms| coarse_ms().wrapping_sub(for_ms).max(1);
+        let late = began(CROWDED_PATIENCE_MS + 100);
         for place in &quarantine.began_ms {
             place.store(late, Ordering::Relaxed);
         }
         assert!(matches!(quarantine.look(), Ok(Err(Full::Late))));
         assert!(matches!(quarantine.enter(), Err(Error::Crowded(_))));
-        quarantine.began_ms[0].store(coarse_ms().wrapping_sub(60_100).max(1), Ordering::Relaxed);
+        quarantine.began_ms[1].store(began(60_100), Ordering::Relaxed);
         assert!(matches!(quarantine.enter(), Err(Error::Quarantined { .. })));
+        // Also for a caller that waits and sees a free place before it.
+        quarantine.began_ms[0].store(0, Ordering::Relaxed);
+        assert!(matches!(
+            quarantine.wait(SOON),
+            Err(Error::Quarantined { .. })
+        ));
     }
 }

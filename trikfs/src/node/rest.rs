@@ -96,10 +96,11 @@ impl Node {
             Ok(turn) => turn,
             Err(Taken) => {
                 // The one that has it may hang in a converter. The actuator rests at once, and again if that one writes after all.
-                write()?;
                 let writes = self.writes();
+                write()?;
                 let turn = self.take_turn();
-                if self.writes() == writes {
+                // Ours alone.
+                if self.writes() == writes.wrapping_add(1) {
                     return Ok(());
                 }
                 turn
