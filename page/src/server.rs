@@ -63,16 +63,17 @@ impl Page {
         let thread = std::thread::Builder::new()
             .name("page".to_owned())
             .spawn(move || {
+                // True at the end of the page.
                 let mut serves = || {
                     runtime.block_on(async {
                         tokio::select! {
-                            _ = serve(&listener, &seats, &shared) => {}
-                            _ = &mut ended => {}
+                            _ = serve(&listener, &seats, &shared) => false,
+                            _ = &mut ended => true,
                         }
-                    });
+                    })
                 };
                 // Connections are tasks of the runtime: they go on, and what a browser drives comes to rest when it leaves.
-                while catch_unwind(AssertUnwindSafe(&mut serves)).is_err() {
+                while !catch_unwind(AssertUnwindSafe(&mut serves)).unwrap_or(false) {
                     runtime.block_on(async { tokio::time::sleep(limits::AGAIN_TIME).await });
                 }
                 // A write to a device may hang, and the end must not.

@@ -23,7 +23,7 @@ pub mod rest;
 mod watch;
 
 use crate::failure::Failure;
-use crate::limits;
+use crate::limits::{self, FIRST_REST};
 use crate::mount::{self, MountOptions};
 use crate::sample_bus;
 use crate::transport::native::invalidate_message;
@@ -100,7 +100,7 @@ fn serve_once(
             rest: &|| {
                 reserve.give_back();
                 // What fails is told by the second time.
-                drop(rest::bring_to_rest(&ledger.rest()));
+                drop(rest::bring_to_rest_within(&ledger.rest(), FIRST_REST));
             },
             cut_off: &|| mounted.abort(),
         };

@@ -363,10 +363,13 @@ fn after_a_kill_the_rest_is_that_of_the_params_of_now_whoever_converts_it() {
         // The next daemon has the params of the configuration, and lets them rest once more.
         eventually("rest by guardian and daemon", || {
             rest.extend(got(&mut motor));
-            rest.len() >= 4
+            rest.contains(&49) && rest.contains(&59)
         });
-        rest[..2].sort_unstable();
-        rest[2..].sort_unstable();
-        assert_eq!(rest, [47, 57, 49, 59], "{converter}");
+        // The guardian does it twice if the threads of the daemon end later than its lifeline.
+        let before = rest.len() - 2;
+        rest[..before].sort_unstable();
+        rest[before..].sort_unstable();
+        let expected: [&[u8]; 2] = [&[47, 57, 49, 59], &[47, 47, 57, 57, 49, 59]];
+        assert!(expected.contains(&&rest[..]), "{converter}: {rest:?}");
     }
 }

@@ -174,7 +174,8 @@ impl Isolated {
         Ok(is_confined)
     }
 
-    /// Ends the process for good, also if a program still has files of the node open. One that is busy ends when it has answered.
+    /// Ends the process for good, also if a program still has files of the node open. One that is busy ends when it has answered,
+    /// or with the last of these files.
     fn retire(&self) {
         self.is_over.store(true, Ordering::SeqCst);
         if let Ok(mut life) = self.life.try_lock() {

@@ -21,7 +21,7 @@ pub fn bring_to_rest(actions: &[RestAction]) -> Vec<String> {
     bring_to_rest_within(actions, Duration::from_millis(limits::REST_MS_MAX.into()))
 }
 
-fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> {
+pub(super) fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> {
     let deadline = Instant::now() + limit;
     let queue: Queue = Arc::new(Mutex::new(actions.iter().cloned().enumerate().collect()));
     let mut open: Vec<bool> = vec![true; actions.len()];

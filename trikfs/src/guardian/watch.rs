@@ -253,7 +253,6 @@ fn judge(status: ExitStatus, asked: bool, life: Life) -> End {
 mod tests {
     use super::*;
     use nix::sys::pthread::{pthread_kill, pthread_self};
-    use std::cell::Cell;
 
     /// Nothing.
     const LEFT_ALONE: LastMoment<'static> = LastMoment {
@@ -273,27 +272,31 @@ mod tests {
 
     #[test]
     fn actuators_rest_before_the_last_thread_has_ended() {
-        let rests_before_the_end_of = |script| {
-            let rests = Cell::new(0);
+        let folder = tempfile::tempdir().expect("a folder");
+        let at_rest = folder.path().join("rest");
+        // The line ends before the process does, as while a thread still ends.
+        let waits = format!(
+            "exec >&-; while ! [ -e {} ]; do sleep 0.01; done",
+            at_rest.display()
+        );
+        let end_of = |script: &str| {
             let mut child = Child::shell(script);
-            let watch = Watch::new().expect("watch");
             let last_moment = LastMoment {
-                rest: &|| rests.set(rests.get() + 1),
+                rest: &|| drop(File::create(&at_rest).expect("created")),
                 cut_off: &|| {},
             };
+            let watch = Watch::new().expect("watch");
             let end = watch.until_end(&mut child, &|| true, &last_moment, &mut |_| {});
-            end.expect("watched");
-            rests.get()
+            end.expect("watched")
         };
-        // The line ends, the process does not: so it is while a thread hangs.
+        let ended = |status| End::Crashed(format!("ended from inside with status {status}"));
+        assert_eq!(end_of(&format!("echo ready 1; {waits}; exit 7")), ended(7));
+        std::fs::remove_file(&at_rest).expect("the rest was asked for");
         assert_eq!(
-            rests_before_the_end_of("echo ready 1; exec >&-; exec sleep 1000"),
-            1
+            end_of("echo ready 1; echo over; exec >&-; exec sleep 0.1"),
+            End::Stopped
         );
-        assert_eq!(
-            rests_before_the_end_of("echo over; exec >&-; exec sleep 1000"),
-            0
-        );
+        assert!(!at_rest.exists(), "the daemon has done it itself");
     }
 
     #[test]

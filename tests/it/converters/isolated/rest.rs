@@ -29,7 +29,7 @@ static int open_it(const trikfs_open_info *info, void **state)
 static int up(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
 { out[0] = in[0] + *(signed char *)state; return in_size != out_size; }
 static int down(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
-{ if (in[0] == 99) __builtin_trap(); while (in[0] == 98) { } if (in[0] == 97) work(400); out[0] = in[0] - *(signed char *)state; return in_size != out_size; }
+{ if (in[0] == 99) __builtin_trap(); while (in[0] == 98) { } if (in[0] == 97) work(1500); out[0] = in[0] - *(signed char *)state; return in_size != out_size; }
 static const trikfs_converter first = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "up", 0, 1, 1, open_it, up, free, 0 };
 static const trikfs_converter second = { TRIKFS_ABI_VERSION, sizeof(trikfs_converter), "down", 0, 1, 1, open_it, down, free, 0 };
 static const trikfs_converter *const all[] = { &first, &second };

@@ -12,7 +12,7 @@ use crate::convert::shared::{Library, LibraryError, NativeStage, OpenInfo};
 use crate::events::lock;
 use crate::failure::Failure;
 use crate::limits::{
-    ISOLATED_DATA_BYTES, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_BYTES, ISOLATED_LOG_LINES,
+    ISOLATED_DATA_MIB, ISOLATED_LIBRARY_BYTES, ISOLATED_LOG_BYTES, ISOLATED_LOG_LINES,
     ISOLATED_ORPHAN_LOOK,
 };
 use converter::{Conversion, Direction};
@@ -104,12 +104,13 @@ fn limit() -> io::Result<()> {
     let now = pages
         .unwrap_or(0)
         .saturating_mul(page.unwrap_or(PAGE_BYTES));
+    let data = libc::rlim_t::from(ISOLATED_DATA_MIB) << 20;
     let addresses = now
-        .saturating_add(ISOLATED_DATA_BYTES)
+        .saturating_add(data)
         .saturating_add(ISOLATED_LIBRARY_BYTES);
     for (what, most) in [
         (Resource::RLIMIT_AS, addresses),
-        (Resource::RLIMIT_DATA, ISOLATED_DATA_BYTES),
+        (Resource::RLIMIT_DATA, data),
         (Resource::RLIMIT_FSIZE, 0),
         (Resource::RLIMIT_CORE, 0),
     ] {

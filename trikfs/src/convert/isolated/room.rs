@@ -3,7 +3,7 @@
 //! Owns the number that follows from the memory of the machine. That a node's process ends with the node is known to
 //! `isolated`.
 
-use crate::limits::{ISOLATED_DATA_BYTES, ISOLATED_NODES_LEAST, ISOLATED_NODES_MOST};
+use crate::limits::{ISOLATED_DATA_MIB, ISOLATED_NODES_LEAST, ISOLATED_NODES_MOST};
 use crate::memory;
 use config::description::NodeDescription;
 use config::problem::Problem;
@@ -23,22 +23,20 @@ pub fn admit<'a>(nodes: impl Iterator<Item = &'a NodeDescription>) -> Result<(),
     let Some(node) = isolated.get(most) else {
         return Ok(());
     };
-    let mib = |bytes: u64| bytes >> 20;
     Err(Problem::new(
         node.place.file.clone(),
         node.place.line,
         format!(
-            "node {}: isolate: the configuration has {} isolated nodes, each with a process that may take {} MiB, and {} MiB of memory have room for {most} of them; leave isolate away where you trust the code, or convert several values in one node",
+            "node {}: isolate: the configuration has {} isolated nodes, each with a process that may take {ISOLATED_DATA_MIB} MiB, and {} MiB of memory have room for {most} of them; leave isolate away where you trust the code, or convert several values in one node",
             node.path,
             isolated.len(),
-            mib(ISOLATED_DATA_BYTES),
-            mib(machine_bytes),
+            machine_bytes >> 20,
         ),
     ))
 }
 
 fn most(machine_bytes: u64) -> usize {
-    let fitting = machine_bytes / ISOLATED_DATA_BYTES;
+    let fitting = (machine_bytes >> 20) / u64::from(ISOLATED_DATA_MIB);
     let fitting = usize::try_from(fitting).unwrap_or(usize::MAX);
     fitting.clamp(ISOLATED_NODES_LEAST, ISOLATED_NODES_MOST)
 }

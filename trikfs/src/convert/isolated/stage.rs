@@ -221,7 +221,7 @@ impl IsolatedStage {
                 }
                 return Ok(instance);
             }
-            Ok(Opened::Fault(why)) => return Err(said(why)),
+            Ok(Opened::Fault(why)) => return Err(Error::Converter(why)),
             Err(lost) => lost,
         };
         Err(self.lost(life, &lost))
