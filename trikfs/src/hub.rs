@@ -317,7 +317,6 @@ impl Hub {
     }
 
     /// Reported before a reader is told, who may ask for the fault at once.
-
     fn try_later(&self, node: &Arc<Node>, error: &Error) {
         node.report(error);
         self.wake_at(

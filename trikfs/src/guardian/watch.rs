@@ -253,6 +253,9 @@ fn judge(status: ExitStatus, asked: bool, life: Life) -> End {
 mod tests {
     use super::*;
     use nix::sys::pthread::{pthread_kill, pthread_self};
+    use nix::sys::stat::Mode;
+    use nix::unistd::mkfifo;
+    use std::path::Path;
 
     /// Nothing.
     const LEFT_ALONE: LastMoment<'static> = LastMoment {
@@ -273,30 +276,33 @@ mod tests {
     #[test]
     fn actuators_rest_before_the_last_thread_has_ended() {
         let folder = tempfile::tempdir().expect("a folder");
-        let at_rest = folder.path().join("rest");
-        // The line ends before the process does, as while a thread still ends.
-        let waits = format!(
-            "exec >&-; while ! [ -e {} ]; do sleep 0.01; done",
-            at_rest.display()
-        );
-        let end_of = |script: &str| {
-            let mut child = Child::shell(script);
+        let [rest, cut_off] = ["rest", "cut-off"].map(|name| folder.path().join(name));
+        for pipe in [&rest, &cut_off] {
+            mkfifo(pipe, Mode::S_IRWXU).expect("a pipe");
+        }
+        // The line ends before the process does, as while a thread still ends. What it waits for, nobody else reads.
+        let end_of = |before: &str, pipe: &Path| {
+            let mut child = Child::shell(&format!(
+                "{before}; exec >&-; read word < {}; exit 7",
+                pipe.display()
+            ));
+            let say = |pipe: &Path| std::fs::write(pipe, "now\n").expect("somebody reads");
             let last_moment = LastMoment {
-                rest: &|| drop(File::create(&at_rest).expect("created")),
-                cut_off: &|| {},
+                rest: &|| say(&rest),
+                cut_off: &|| {
+                    if pipe == cut_off {
+                        say(pipe);
+                    }
+                },
             };
             let watch = Watch::new().expect("watch");
             let end = watch.until_end(&mut child, &|| true, &last_moment, &mut |_| {});
             end.expect("watched")
         };
-        let ended = |status| End::Crashed(format!("ended from inside with status {status}"));
-        assert_eq!(end_of(&format!("echo ready 1; {waits}; exit 7")), ended(7));
-        std::fs::remove_file(&at_rest).expect("the rest was asked for");
-        assert_eq!(
-            end_of("echo ready 1; echo over; exec >&-; exec sleep 0.1"),
-            End::Stopped
-        );
-        assert!(!at_rest.exists(), "the daemon has done it itself");
+        let crashed = End::Crashed("ended from inside with status 7".to_owned());
+        assert_eq!(end_of("echo ready 1", &rest), crashed);
+        // One that ends in order has done it itself.
+        assert_eq!(end_of("echo ready 1; echo over", &cut_off), End::Failed);
     }
 
     #[test]
