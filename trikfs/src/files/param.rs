@@ -81,10 +81,13 @@ impl OpenFile for ParamFile {
         let name = &self.name;
         let value = self.number(data);
         let value = value.inspect_err(|error| self.node.report(error))?;
-        let _inside = self.node.quarantine.enter()?;
+        let inside = self.node.quarantine.enter()?;
         // It changes what writes mean.
         let _admitted = Ownership::default().admit(&self.node, request.caller)?;
         let changed = self.node.set_param(name, value);
+        // The converters of other nodes may take long for their rests, and this node is not late because of that.
+        drop(inside);
+        self.node.engine.params_changed();
         if let Err(error) = &changed {
             self.node.engine.log.line(&format!(
                 "{}: params/{name} stays as it is: {error}",

@@ -136,13 +136,14 @@ impl Node {
         }
     }
 
-    /// Changes a param, with what follows from it for the rest of this node and of all that write through it.
+    /// Changes a param, with what follows from it for the rest of this node. `Engine::params_changed` is for that of all others
+    /// that write through it.
     ///
     /// # Errors
     /// The reason of a library that refuses the number, or of an isolated converter that makes no rest of it; then
     /// everything is as it was.
     pub fn set_param(self: &Arc<Self>, name: &str, value: f64) -> Result<(), Error> {
-        let turn = lock(&self.driving.params_turn);
+        let _turn = lock(&self.driving.params_turn);
         let (former, params) = (self.recipe.param(name), self.params_on_the_way());
         let known = self.driving.known_rest(params);
         self.recipe.set_param(name, value)?;
@@ -155,8 +156,6 @@ impl Node {
                 self.driving.keep_rest(&action, params.wrapping_add(2));
             }
         }
-        drop(turn);
-        self.engine.params_changed();
         renewed
     }
 
