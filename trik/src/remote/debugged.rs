@@ -129,7 +129,7 @@ impl Debugged {
         true
     }
 
-    /// States that were told so far are of before the next order.
+    /// States that were told so far are of before the order that was answered just now.
     pub(crate) fn forget_states(&mut self) {
         self.events.retain(|event| match event {
             Event::Report(told) => told.get("state").is_none(),
@@ -208,7 +208,12 @@ impl Debugged {
 
 impl Target for Debugged {
     fn order(&mut self, order: &Order) -> Result<Value, Error> {
-        self.ask(&order.to_string())
+        let answer = self.ask(&order.to_string())?;
+        if answer.get("program").is_some() {
+            // What came before it, such as the stop at which the order was given, is older.
+            self.forget_states();
+        }
+        Ok(answer)
     }
 
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
