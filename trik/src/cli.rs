@@ -40,7 +40,7 @@ Examples:
   trik record -o run.mcap            record everything that the robot gives
   trik box save -o before.mcap       the last minutes of a robot, after something has happened
   trik replay run.mcap               and make the same tree of it
-  trik export run.mcap --csv -o run.csv   or a table
+  trik export run.mcap -o run.csv    or a table
   trik plot run.mcap sensors motors/M1 -o run.svg   or a picture
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
@@ -175,7 +175,8 @@ enum Command {
     /// Write a recording as a table.
     ///
     /// Each row is a sample of one node or a failure, in the order of time; the other cells of the row are empty. The first
-    /// column has seconds from the beginning, the last one failures.
+    /// column has seconds from the beginning, the last one failures. Cells have commas between them, and the first row has
+    /// the names of the columns.
     ///
     /// Exit status: 0 written; 1 the recording cannot be read, or the table cannot be written; 2 the command line was not
     /// understood.
@@ -528,6 +529,7 @@ mod tests {
             &["dcml", "check", "a.dcml"] as &[&str],
             &["dcml", "gen", "--target", "c", "a.dcml"],
             &["fault", "--at", "/tmp/robot", "D1", "unplug"],
+            &["export", "run.mcap", "--csv", "-o", "table"],
         ] {
             assert!(parse(line).is_ok(), "{line:?}");
         }

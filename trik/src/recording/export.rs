@@ -3,7 +3,7 @@
 //! Owns rows and columns. It is written while it is read, so that its length costs no memory.
 
 use super::fresh::Fresh;
-use super::shared::{Opened, Progress, moment, open, seconds};
+use super::shared::{Opened, Progress, has_ending, moment, open, seconds};
 use crate::error::Error;
 use crate::limits;
 use crate::output::csv;
@@ -21,9 +21,6 @@ use std::path::{Path, PathBuf};
 pub(crate) struct ExportArgs {
     /// The recording.
     pub file: PathBuf,
-    /// As CSV: cells with commas between them, and a row with their names first.
-    #[arg(long, required = true)]
-    pub csv: bool,
     /// Only nodes whose path is matched: * stands for anything, and a group for all below it; may be given several times.
     #[arg(long, value_name = "PATTERN")]
     pub only: Vec<String>,
@@ -33,9 +30,12 @@ pub(crate) struct ExportArgs {
     /// Up to this moment and with it [default: to the end].
     #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub to: Option<u64>,
-    /// The table, a new file [default: standard output].
+    /// The table as CSV, a new file; - is standard output, as without this option.
     #[arg(long, short, value_name = "OUT.csv")]
     pub output: Option<PathBuf>,
+    /// As CSV, whatever the name of the file: the older spelling of its ending.
+    #[arg(long, hide = true)]
+    pub csv: bool,
     /// Overwrite the table if it exists.
     #[arg(long, requires = "output")]
     pub force: bool,
@@ -55,6 +55,11 @@ struct Columns {
 /// # Errors
 /// It is no whole recording, has no such nodes or too many numbers, or the table cannot be written.
 pub(crate) fn run(args: &ExportArgs) -> Result<u8, Refusal> {
+    let place = (args.output.as_deref()).filter(|path| *path != Path::new("-"));
+    if place.is_some_and(|place| !args.csv && !has_ending(place, "csv")) {
+        let why = "the table is CSV: its name ends with .csv";
+        return Err(Refusal::new(why));
+    }
     let mut opened = open(&args.file)?;
     let is_wanted =
         |path: &str| args.only.is_empty() || args.only.iter().any(|one| matches(one, path));
@@ -62,7 +67,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<u8, Refusal> {
     let begin = opened.begin_ns();
     opened.seek(begin.saturating_add(args.from.unwrap_or(0)));
     let last = args.to.map_or(u64::MAX, |to| begin.saturating_add(to));
-    let place = (args.output.as_deref()).filter(|path| *path != Path::new("-"));
     let Some(place) = place else {
         let out = BufWriter::new(io::stdout().lock());
         let name = Path::new("standard output");

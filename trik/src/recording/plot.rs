@@ -5,7 +5,7 @@
 
 mod png;
 
-use super::shared::{Opened, Progress, moment, open};
+use super::shared::{Opened, Progress, has_ending, moment, open};
 use crate::chart::{self, Panel};
 use crate::error::Error;
 use crate::limits;
@@ -17,7 +17,7 @@ use journal::layout::Layout;
 use journal::read::{Event, EventKind};
 use lang_text::problem::Locale;
 use recorder::pattern::matches;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Size of a panel, and what is around it, in px.
 const PANEL: (f64, f64) = (560.0, 110.0);
@@ -87,9 +87,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
         source: &args.file,
         locale: Locale::English,
     };
-    let ends = |with: &str| {
-        (path.and_then(Path::extension)).is_some_and(|end| end.eq_ignore_ascii_case(with))
-    };
+    let ends = |with: &str| path.is_some_and(|path| has_ending(path, with));
     let is_png = args.svg.is_none() && ends("png");
     if args.svg.is_none() && !ends("svg") && !is_png && !output.is_standard() {
         let why = "the picture is SVG or PNG: its name ends with .svg or .png";

@@ -28,6 +28,12 @@ pub(super) fn open(path: &Path) -> Result<Opened, Error> {
     Reader::open(BufReader::new(file(path)?)).map_err(|why| Error::file(path, why))
 }
 
+/// Whether the name of a file ends so, which says its form; in small letters or capital ones.
+pub(super) fn has_ending(path: &Path, ending: &str) -> bool {
+    let own = path.extension();
+    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
 /// A moment as seconds from the beginning, in ns.
 pub(super) fn moment(text: &str) -> Result<u64, Error> {
     let seconds: Option<f64> = text.parse().ok();
@@ -121,6 +127,16 @@ impl Read for Watched {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_form_of_a_file_is_the_ending_of_its_name() {
+        for name in ["a.csv", "b/a.CSV", "a.mcap.csv"] {
+            assert!(has_ending(Path::new(name), "csv"), "{name}");
+        }
+        for name in ["a", "csv", ".csv", "a.csv.gz", "a.csv/b"] {
+            assert!(!has_ending(Path::new(name), "csv"), "{name}");
+        }
+    }
 
     #[test]
     fn moments_are_seconds_and_keep_their_digits() {

@@ -96,7 +96,7 @@ fn the_document_of_recordings_is_what_really_happens() {
 #[test]
 fn a_table_has_each_number_in_its_column_and_no_formula() {
     let board = recorded();
-    let table = trik(&board, &["export", "run.mcap", "--csv", "-o", "run.csv"]).good();
+    let table = trik(&board, &["export", "run.mcap", "-o", "run.csv"]).good();
     assert_eq!(table, "");
     let table = fs::read_to_string(board.dir().join("run.csv")).expect("a table");
     let lines: Vec<&str> = table.split('\n').collect();
@@ -113,10 +113,17 @@ fn a_table_has_each_number_in_its_column_and_no_formula() {
     // 401 distances, 3 powers, a text, a failure; the names; nothing after the last line end.
     assert_eq!(lines.len(), 401 + 3 + 1 + 1 + 1 + 1);
     let words = [
-        "export", "run.mcap", "--csv", "--only", "motors", "--from", "2", "--to", "5",
+        "export", "run.mcap", "--only", "motors", "--from", "2", "--to", "5",
     ];
     let some = trik(&board, &words).good();
     assert_eq!(some, "time_s,motors/M1.power,fault\n5.0,-60,\n");
+    let words = ["export", "run.mcap", "-o", "run.ods"];
+    let refused = why_not(&board, &words);
+    assert!(refused.contains("its name ends with .csv"), "{refused}");
+    // The older spelling of the ending.
+    trik(&board, &["export", "run.mcap", "--csv", "-o", "table"]).good();
+    let old = fs::read_to_string(board.dir().join("table")).expect("a table");
+    assert_eq!(old, table);
 }
 
 #[test]
@@ -244,7 +251,7 @@ fn files_that_are_no_recordings_are_refused_by_every_command() {
     board.file("no.mcap", "no recording");
     for words in [
         &["cut", "no.mcap", "-o", "x"] as &[&str],
-        &["export", "no.mcap", "--csv"],
+        &["export", "no.mcap"],
         &["plot", "no.mcap", "a", "-o", "x.svg"],
     ] {
         let refused = why_not(&board, words);

@@ -1,4 +1,4 @@
-// Numbers of a graph as a table, as `trik export --csv` writes it.
+// Numbers of a graph as a table, as `trik export` writes it.
 //
 // Owns the quotes. A text that a spreadsheet program would take for a formula begins with an apostrophe.
 
