@@ -7,6 +7,7 @@ pub(crate) mod args;
 use crate::error::Error;
 use crate::record::tree;
 use crate::refusal::Refusal;
+use crate::remote::target::tree_of;
 use crate::up::session::signals;
 use ::bridge::follow::{Change, Follow};
 use ::bridge::http::serve;
@@ -31,7 +32,9 @@ pub(crate) fn run(which: &Bridge) -> Result<u8, Refusal> {
 }
 
 fn prometheus(args: &PrometheusArgs) -> Result<u8, Refusal> {
-    let root = tree(args.mountpoint.as_deref())?;
+    let named = args.robot.as_deref().map(tree_of).transpose()?;
+    let named = named.as_deref().or(args.mountpoint.as_deref());
+    let root = tree(named)?;
     // Threads inherit what is blocked.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let mut follow = Follow::begin(&root, PROGRAM).map_err(refused)?;

@@ -493,6 +493,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_bridge_is_of_one_tree() {
+        let line = ["bridge", "prometheus", "--robot", "/tmp/robot"];
+        assert!(parse(&line).is_ok());
+        assert!(parse(&["bridge", "prometheus", "/tmp/robot"]).is_ok());
+        refusal(&[&line[..], &["/tmp/other"]].concat());
+    }
+
     /// The words of each command that a person is shown, and of those below it.
     fn shown(command: &clap::Command, before: &[String]) -> Vec<Vec<String>> {
         let subcommands = command.get_subcommands();

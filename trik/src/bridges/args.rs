@@ -28,6 +28,9 @@ pub(crate) struct PrometheusArgs {
     /// The TCP port; 0 takes a free one.
     #[arg(long, default_value_t = 9464)]
     pub port: u16,
+    /// The robot: where its tree is mounted, or the address of a virtual one.
+    #[arg(long, value_name = "ROBOT", conflicts_with = "mountpoint")]
+    pub robot: Option<PathBuf>,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
 }

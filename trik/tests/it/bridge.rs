@@ -17,8 +17,9 @@ struct Bridge {
 }
 
 impl Bridge {
-    fn start(home: &Home) -> Self {
-        let mut command = home.command(&["bridge", "prometheus", "--port", "0"]);
+    fn start(home: &Home, more: &[&str]) -> Self {
+        let words = ["bridge", "prometheus", "--port", "0"];
+        let mut command = home.command(&[&words[..], more].concat());
         let mut child = command.stdout(Stdio::piped()).spawn().expect("trik bridge");
         let mut line = String::new();
         let out = child.stdout.as_mut().expect("its output");
@@ -58,7 +59,7 @@ fn prometheus_sees_a_robot_drive_and_go() {
     let Some(home) = Home::new() else { return };
     let home = Arc::new(home);
     let robot = Robot::start(home.clone(), &[]);
-    let bridge = Bridge::start(&home);
+    let bridge = Bridge::start(&home, &[]);
     robot.drive(30, 40);
     eventually("a power that is told", || {
         let text = bridge.text();
@@ -70,6 +71,11 @@ fn prometheus_sees_a_robot_drive_and_go() {
     let text = bridge.text();
     assert_eq!(number(&text, "trikfs_up"), Some(1.0), "{text}");
     assert!(text.contains("trikfs_rate_hertz{name="), "{text}");
+    let root = robot.root.to_str().expect("UTF-8");
+    let named = Bridge::start(&home, &["--robot", root]);
+    let text = named.text();
+    assert_eq!(number(&text, "trikfs_up"), Some(1.0), "{text}");
+    named.end();
     drop(robot);
     eventually("a tree that is gone", || {
         let text = bridge.text();
