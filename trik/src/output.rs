@@ -25,7 +25,17 @@ pub(crate) struct Output<'a> {
     pub locale: Locale,
 }
 
-impl Output<'_> {
+impl<'a> Output<'a> {
+    /// A recording of what happens meanwhile: no file is read for it.
+    pub fn recording(path: &'a Path, force: bool) -> Self {
+        Self {
+            path: Some(path),
+            force,
+            source: Path::new(""),
+            locale: Locale::English,
+        }
+    }
+
     fn refusal(&self, words: Words) -> Refusal {
         Refusal::new(words.in_locale(self.locale))
     }
@@ -56,6 +66,43 @@ impl Output<'_> {
             return Err(self.refusal(words::is_there(&name)));
         }
         Ok(())
+    }
+
+    /// Refuses standard output, for what only a file can hold.
+    ///
+    /// # Errors
+    /// It is standard output.
+    pub fn refuse_standard(&self) -> Result<(), Refusal> {
+        match self.is_standard() {
+            true => Err(self.refusal(words::needs_file())),
+            false => Ok(()),
+        }
+    }
+
+    /// Takes away what may be replaced, for a file that is seen while it grows, and gives its place. Who still reads the old
+    /// one reads that to its end.
+    ///
+    /// # Errors
+    /// As [`Self::refuse_present`] and [`Self::refuse_standard`]; what is there is no file, or stays.
+    pub fn make_room(&self) -> Result<PathBuf, Refusal> {
+        self.refuse_present()?;
+        let Some(path) = self.file() else {
+            return Err(self.refusal(words::needs_file()));
+        };
+        if path.symlink_metadata().is_err() {
+            return Ok(path.to_owned());
+        }
+        // Behind a link is the file that is meant.
+        let place = settled(path);
+        let is_plain = |there: Metadata| there.is_file() || there.is_symlink();
+        // A device is not ours to take away.
+        if !place.symlink_metadata().is_ok_and(is_plain) {
+            return Err(self.refusal(words::is_no_file(&named(path))));
+        }
+        match fs::remove_file(&place) {
+            Ok(()) => Ok(place),
+            Err(error) => Err(self.refusal(words::unwritten(&named(path), error))),
+        }
     }
 
     /// Refuses to replace other files that are read, and files that are written beside it.
@@ -163,4 +210,42 @@ pub(crate) fn replace(path: &Path, there: Option<&Metadata>, bytes: &[u8]) -> io
         let _ = fs::remove_file(&fresh);
     }
     placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is told of a place that is not given.
+    fn told(path: &Path, force: bool) -> String {
+        let refusal = Output::recording(path, force).make_room();
+        refusal.expect_err("refused").lines.join("\n")
+    }
+
+    #[test]
+    fn room_is_made_where_a_file_is_and_force_is_given() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let path = dir.path().join("run.mcap");
+        let made = |force| Output::recording(&path, force).make_room();
+        assert_eq!(made(false).as_deref(), Ok(path.as_path()));
+        fs::write(&path, "old").expect("a file");
+        assert!(told(&path, false).contains("is there already: --force replaces it"));
+        assert!(path.exists());
+        let place = path.canonicalize().expect("a path");
+        let link = dir.path().join("link");
+        std::os::unix::fs::symlink(&path, &link).expect("a link");
+        let behind = Output::recording(&link, true).make_room();
+        assert_eq!(behind.as_deref(), Ok(place.as_path()));
+        assert!(!path.exists() && link.is_symlink());
+    }
+
+    #[test]
+    fn no_room_is_made_of_what_is_no_file() {
+        let dir = tempfile::tempdir().expect("a directory");
+        for path in [dir.path(), Path::new("/dev/null")] {
+            assert!(told(path, true).contains("is no file"), "{path:?}");
+            assert!(path.exists(), "{path:?}");
+        }
+        assert!(told(Path::new("-"), true).contains("standard output"));
+    }
 }

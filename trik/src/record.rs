@@ -5,6 +5,7 @@
 pub(crate) mod args;
 
 use crate::error::Error;
+use crate::output::Output;
 use crate::place;
 use crate::refusal::Refusal;
 use crate::remote::recorded;
@@ -30,6 +31,9 @@ const USUAL: &str = "/trikfs";
 /// # Errors
 /// There is no tree, or the file cannot be written.
 pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
+    let output = Output::recording(&args.output, args.force);
+    output.refuse_standard()?;
+    output.refuse_present()?;
     let named = match &args.robot {
         Some(Recorded::Network(robot)) => return recorded::record(args, robot),
         Some(Recorded::Tree(_)) if args.hz.is_some() => {
@@ -49,7 +53,8 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
         false => Disk::create_with_standard,
         true => Disk::create,
     };
-    let disk = create(&args.output, LIBRARY, recorder::limits::WAITING_BYTES);
+    let place = output.make_room()?;
+    let disk = create(&place, LIBRARY, recorder::limits::WAITING_BYTES);
     let disk = disk.map_err(refused)?;
     let mut tape = Tape::begin(watch, disk);
     say(&begun(&tape.watch, args))?;

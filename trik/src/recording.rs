@@ -14,6 +14,7 @@ use crate::output::standard;
 use crate::refusal::Refusal;
 use crate::terminal::harmless;
 use clap::Args;
+use fresh::Fresh;
 use journal::mend::mend;
 use journal::read::Reader;
 use journal::write::ABOUT;
@@ -34,9 +35,12 @@ pub(crate) struct InfoArgs {
 pub(crate) struct MendArgs {
     /// The cut recording.
     pub file: PathBuf,
-    /// Another file for the whole one, which must not exist yet [default: it takes the place of the cut one].
+    /// A new file for the whole one [default: it takes the place of the cut one].
     #[arg(long, short, value_name = "FILE.mcap")]
     pub output: Option<PathBuf>,
+    /// Overwrite that file if it exists.
+    #[arg(long, requires = "output")]
+    pub force: bool,
 }
 
 /// Tells what is in a recording.
@@ -119,28 +123,19 @@ pub(crate) fn mend_file(args: &MendArgs) -> Result<u8, Refusal> {
     Ok(0)
 }
 
-fn mended(args: &MendArgs) -> Result<String, Error> {
+fn mended(args: &MendArgs) -> Result<String, Refusal> {
     let path = &args.file;
     if args.output.is_none() && Reader::open(open(path)?).is_ok() {
         return Ok(format!("{}: it is whole\n", path.display()));
     }
     let from = open(path)?;
     let fresh = match &args.output {
-        Some(output) => output.clone(),
-        // Beside it, so that it can take its place at one stroke.
-        None => path.with_extension("mending"),
+        Some(output) => Fresh::new(output, path, args.force)?,
+        None => Fresh::over(path)?,
     };
-    let file = File::create_new(&fresh).map_err(|error| Error::file(&fresh, error))?;
-    let saved = mend(from, BufWriter::new(&file));
-    let saved = saved.and_then(|saved| Ok(file.sync_all().map(|()| saved)?));
-    let saved = saved.map_err(|why| {
-        // What could not be written helps nobody.
-        let _ = std::fs::remove_file(&fresh);
-        Error::file(path, why)
-    })?;
-    if args.output.is_none() {
-        std::fs::rename(&fresh, path).map_err(|error| Error::file(path, error))?;
-    }
+    let saved = mend(from, BufWriter::new(fresh.file()?));
+    let saved = saved.map_err(|why| Error::file(path, why))?;
+    fresh.place()?;
     let shown = args.output.as_ref().unwrap_or(path).display();
     Ok(format!(
         "{shown}: {} messages and {} files that go with them\n",

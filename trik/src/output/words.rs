@@ -19,6 +19,22 @@ pub(super) fn is_there(name: &str) -> Words {
     )
 }
 
+/// It is a directory, a device or a pipe.
+pub(super) fn is_no_file(name: &str) -> Words {
+    Words::new(
+        format!("{name} is no file, and only a file is replaced: name another one"),
+        format!("{name} - не файл, а заменяются только файлы: назовите другой"),
+    )
+}
+
+/// Only a file can hold it.
+pub(super) fn needs_file() -> Words {
+    Words::new(
+        "a recording cannot be written to standard output: name a file",
+        "запись нельзя выводить в стандартный вывод: назовите файл",
+    )
+}
+
 /// It is read or written under another option too.
 pub(super) fn is_taken(name: &str) -> Words {
     Words::new(

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// The options of `trik record`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct RecordArgs {
-    /// The recording, which must not exist yet.
+    /// The recording, a new file.
     #[arg(long, short, value_name = "FILE.mcap", default_value = "robot.mcap")]
     pub output: PathBuf,
     /// Only nodes whose path is matched: * stands for anything, and a group for all below it; may be given several times.
@@ -30,6 +30,9 @@ pub(crate) struct RecordArgs {
     /// Leave out the messages of standard types, which other tools show at once: a smaller file.
     #[arg(long)]
     pub no_standard: bool,
+    /// Overwrite the recording if it exists.
+    #[arg(long)]
+    pub force: bool,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
 }

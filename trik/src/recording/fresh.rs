@@ -33,11 +33,16 @@ impl Fresh {
             locale: Locale::English,
         };
         output.refuse_present()?;
-        if place == Path::new("-") {
-            let why = "a recording cannot be written to standard output: name a file";
-            return Err(Refusal::new(why));
-        }
+        output.refuse_standard()?;
         Ok(Self::beside(place, force)?)
+    }
+
+    /// A file that takes the place of the one that is read.
+    ///
+    /// # Errors
+    /// None can be made beside it.
+    pub(super) fn over(source: &Path) -> Result<Self, Error> {
+        Self::beside(source, true)
     }
 
     fn beside(place: &Path, replaces: bool) -> Result<Self, Error> {

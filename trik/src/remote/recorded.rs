@@ -7,6 +7,7 @@ use super::link::{Link, Message, ms};
 use super::target::{Target, target, the_one};
 use crate::error::Error;
 use crate::limits;
+use crate::output::Output;
 use crate::record::args::RecordArgs;
 use crate::refusal::Refusal;
 use crate::up::session::signals;
@@ -15,15 +16,18 @@ use nix::sys::signalfd::SignalFd;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Read, Write};
 use std::os::fd::AsFd;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// What `trik box save` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SaveArgs {
-    /// The recording, which must not exist yet.
+    /// The recording, a new file.
     #[arg(long, short, value_name = "FILE.mcap", default_value = "box.mcap")]
     pub output: PathBuf,
+    /// Overwrite the recording if it exists.
+    #[arg(long)]
+    pub force: bool,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
@@ -33,7 +37,7 @@ pub(crate) struct SaveArgs {
 /// Records what happens on a robot, until somebody stops it.
 ///
 /// # Errors
-/// The robot is not reached, does not send, or the file cannot be written.
+/// The robot is not reached, does not send, or the file is there already or cannot be written.
 pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
     let mut wanted = args.only.join(",");
     if let Some(rate_hz) = args.hz {
@@ -49,21 +53,24 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
         "recording what {robot} sends into {}; Ctrl-C ends it\n",
         args.output.display()
     ))?;
-    keep(pieces, &args.output)
+    keep(pieces, &Output::recording(&args.output, args.force))
 }
 
 /// Fetches the last minutes of a robot, which has saved them as well.
 ///
 /// # Errors
-/// The robot is not reached or keeps none, or the file cannot be written.
+/// The robot is not reached or keeps none, or the file is there already or cannot be written.
 pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
+    let output = Output::recording(&args.output, args.force);
+    output.refuse_standard()?;
+    output.refuse_present()?;
     let robot = match &args.robot {
         Some(robot) => robot.clone(),
         None => the_one()?,
     };
     let mut pieces = Pieces::of(&robot, &[b"box"], None)?;
     pieces.wait()?;
-    keep(pieces, &args.output)
+    keep(pieces, &output)
 }
 
 fn say(text: &str) -> Result<(), Refusal> {
@@ -71,15 +78,16 @@ fn say(text: &str) -> Result<(), Refusal> {
 }
 
 /// Puts all pieces into a file; the first is there.
-fn keep(mut pieces: Pieces, path: &Path) -> Result<u8, Refusal> {
+fn keep(mut pieces: Pieces, output: &Output<'_>) -> Result<u8, Refusal> {
     let begin = Instant::now();
-    let file = File::create_new(path).map_err(|error| Error::file(path, error))?;
+    let path = output.make_room()?;
+    let file = File::create_new(&path).map_err(|error| Error::file(&path, error))?;
     let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
     if pieces.is_watched {
         // A terminal that is gone has nothing to clear.
         let _ = write!(io::stderr(), "\r\x1b[K");
     }
-    let saved = saved.map_err(|error| Error::file(path, error))?;
+    let saved = saved.map_err(|error| Error::file(&path, error))?;
     let size = path.metadata().map_or(0, |file| file.len());
     say(&format!(
         "{}: {}; {:.1} s, {} messages, {} KiB\n",

@@ -94,7 +94,12 @@ fn the_last_minutes_are_fetched_with_what_programs_did() {
     assert_eq!(content(&saved(&folder, "asked")).1, lines);
     let output = home.run(&["box", "save", "-o", name, "--robot", robot.ip()]);
     assert_eq!(output.status.code(), Some(1), "{}", output.stderr);
-    assert!(output.stderr.contains("exists"), "{}", output.stderr);
+    let why = "last.mcap is there already: --force replaces it";
+    assert!(output.stderr.contains(why), "{}", output.stderr);
+    let before = fs::read(&file).expect("a file");
+    let words = ["box", "save", "--force", "-o", name, "--robot", robot.ip()];
+    home.run(&words).good();
+    assert_ne!(fs::read(&file).expect("a file"), before);
 }
 
 #[test]

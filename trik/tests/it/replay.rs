@@ -301,6 +301,23 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     assert!(samples(&home)["encoders/E3"].len() > 10);
     let again = home.run(&["mend", "run.mcap"]);
     assert!(again.stdout.contains("it is whole"), "{}", again.stdout);
+    home.0.file("old.mcap", "old");
+    let words = ["mend", "run.mcap", "-o", "old.mcap"];
+    let refused = home.run(&words);
+    assert_eq!(refused.status.code(), Some(1));
+    let why = "old.mcap is there already: --force replaces it";
+    assert!(refused.stderr.contains(why), "{}", refused.stderr);
+    home.run(&[&words[..], &["--force"]].concat()).good();
+    let whole = home.run(&["info", "old.mcap"]).good();
+    assert!(whole.contains("encoders/E3"), "{whole}");
+    // Nothing is written to before it is known what is to be recorded.
+    let refused = home.run(&["record", "-o", "run.mcap", "--seconds", "1"]);
+    let why = "run.mcap is there already: --force replaces it";
+    assert!(refused.stderr.contains(why), "{}", refused.stderr);
+    let words = "record -o run.mcap --seconds 1 --force --only battery";
+    home.run(&words.split(' ').collect::<Vec<_>>()).good();
+    let info = home.run(&["info", "run.mcap"]).good();
+    assert!(!info.contains("encoders/E3"), "{info}");
     assert!(robot.end(Signal::SIGINT).success());
 }
 
