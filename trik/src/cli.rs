@@ -538,6 +538,10 @@ mod tests {
             &["dcml", "gen", "--target", "c", "a.dcml"],
             &["fault", "--at", "/tmp/robot", "D1", "unplug"],
             &["export", "run.mcap", "--csv", "-o", "table"],
+            &["up", "--world", "a.xml"],
+            &[
+                "dcml", "plan", "a.dcml", "--goal", "x=1", "--world", "a.xml",
+            ],
         ] {
             assert!(parse(line).is_ok(), "{line:?}");
         }

@@ -324,7 +324,7 @@ test('the robot in its room is seen, carried, held and broken', () => around([],
 
 test('a world of TRIK Studio is replaced by one that is dropped', async () => {
   const empty = join(import.meta.dirname, 'empty.xml');
-  await around(['--world', empty], crowded);
+  await around(['--field', empty], crowded);
 }, 180_000);
 
 test('no page has complained', () => {

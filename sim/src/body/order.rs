@@ -85,7 +85,7 @@ impl fmt::Display for BadOrder {
             Self::Outside => out.write_str("that place is beyond the walls of the room"),
             Self::NoThing(number) => write!(out, "there is no thing number {number} in this world"),
             Self::OwnRoom => out.write_str(
-                "this robot is in a room of its own; only one of `trik up --world` takes other worlds",
+                "this robot is in a room of its own; only one of `trik up --field` takes other worlds",
             ),
             Self::Locked => {
                 out.write_str("the project of this world locks it: its walls and things stay")

@@ -35,7 +35,12 @@ pub(crate) struct UpArgs {
     pub start: Vec<(String, f64)>,
     /// A world of TRIK Studio instead of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
     /// is where the world puts it, and has the wheels and sensors that are plugged in there.
-    #[arg(long, value_name = "FILE", conflicts_with = "body")]
+    #[arg(
+        long = "field",
+        alias = "world",
+        value_name = "FILE",
+        conflicts_with = "body"
+    )]
     pub world: Option<PathBuf>,
     /// Configuration instead of the robot's own.
     #[arg(long, value_name = "FILE")]

@@ -166,7 +166,7 @@ fn the_labyrinth_of_trik_is_left() {
     fs::copy(&path, board.path("labyrinth.xml")).unwrap();
     // Its numbers count as centimetres. From beside the walls to the finish on the other side.
     let words = format!(
-        "{DRIVE} --world labyrinth.xml --goal x=5.25,y=3.25 --goal-radius 0.3 --bounds x=-4.5..6,y=-2..4 --svg \
+        "{DRIVE} --field labyrinth.xml --goal x=5.25,y=3.25 --goal-radius 0.3 --bounds x=-4.5..6,y=-2..4 --svg \
          labyrinth.svg --json --iterations 300000"
     );
     let output = plan(&board, "Drive", &words);
@@ -247,7 +247,7 @@ const CASES: &[(&str, &str, i32, &str)] = &[
     ),
     (
         "Car",
-        "--goal X=1,Y=1 --world models.dcml",
+        "--goal X=1,Y=1 --field models.dcml",
         2,
         "models.dcml: ",
     ),

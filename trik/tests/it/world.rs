@@ -40,7 +40,7 @@ fn a_world_of_trik_studio_is_driven_in_through_the_same_files() {
     let home = Arc::new(home);
     let world = home.0.file("world.xml", WORLD);
     let world = world.to_str().expect("UTF-8").to_owned();
-    let one = Reachable::beside(&home, &["--world", &world]);
+    let one = Reachable::beside(&home, &["--field", &world]);
     let robot = &one.robot;
     let begun = robot.pose();
     // 300 - 5 - 62 px to the wall are 82 cm; the sensor reaches 80.
@@ -71,7 +71,7 @@ fn a_person_stops_the_time_of_a_world_and_changes_its_walls() {
         "<root version=\"20251219\"><settings/><world/></root>",
     );
     let world = world.to_str().expect("UTF-8").to_owned();
-    let one = Reachable::beside(&home, &["--world", &world]);
+    let one = Reachable::beside(&home, &["--field", &world]);
     let robot = &one.robot;
     let control = robot.devices.join("control/world");
     let order = |words: &str| std::fs::write(&control, format!("{words}\n")).expect("control");
@@ -103,7 +103,7 @@ fn a_world_that_is_none_is_refused_before_anything_starts() {
     let broken = home.0.file("broken.xml", "<root><world>");
     let broken = broken.to_str().expect("UTF-8");
     for (file, reason) in [(broken, "broken.xml"), ("/nowhere/w.xml", "/nowhere/w.xml")] {
-        let output = home.run(&["up", "--world", file]);
+        let output = home.run(&["up", "--field", file]);
         assert_ne!(output.code(), 0, "{file}");
         assert!(output.stderr.contains(reason), "{}", output.stderr);
     }

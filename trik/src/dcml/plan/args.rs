@@ -18,7 +18,7 @@ pub(crate) struct PlanArgs {
     /// Its parameters, all of them: L=0.2,r=0.03.
     #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub params: Vec<Assignments>,
-    /// The initial state; what is not named is 0, or with --world the position of the world's robot.
+    /// The initial state; what is not named is 0, or with --field the position of its robot.
     #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub start: Vec<Assignments>,
     /// The goal: x=3,y=2 and optionally theta=0. States and outputs may be named.
@@ -48,13 +48,18 @@ pub(crate) struct PlanArgs {
     pub weights: Vec<Assignments>,
     /// Obstacles: a world of TRIK Studio, FILE.xml or a project FILE.qrs. In metres, x to the right and y up, so y has the
     /// other sign than there.
-    #[arg(long, value_name = "FILE", conflicts_with = "obstacles")]
+    #[arg(
+        long = "field",
+        alias = "world",
+        value_name = "FILE",
+        conflicts_with = "obstacles"
+    )]
     pub world: Option<PathBuf>,
     /// Obstacles: a text with lines like `wall 0 1 2 1 0.02`, `rectangle`, `polygon`, `circle`, `bounds`.
     #[arg(long, value_name = "FILE")]
     pub obstacles: Option<PathBuf>,
     /// The area that it covers: circle:RADIUS or polygon:X,Y,X,Y,..., convex, seen from its position [default: circle:0.1; with
-    /// --world the robot of TRIK].
+    /// --field the robot of TRIK].
     #[arg(long, value_name = "SHAPE", value_parser = forms::footing)]
     pub footprint: Option<Footing>,
     /// One more body of the robot, such as a trailer: X,Y,HEADING=SHAPE, names of states or outputs that say where it is, and

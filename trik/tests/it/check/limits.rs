@@ -157,7 +157,7 @@ fn what_was_left_out_or_mixed_up_is_told() {
             "\nstop.js: not accomplished",
         ),
         (
-            &["up", "--world", "nope.xml"],
+            &["up", "--field", "nope.xml"],
             "nope.xml: there is no such file\n",
         ),
         (
