@@ -2,6 +2,8 @@
 //
 // Owns its text in the store of the browser. What is no dashboard is none: it is ignored, in whole or in part.
 
+import { GRAPH_NUMBERS_MAX, PINNED_MAX, STORED_NAME_LENGTH_MAX } from '../limits';
+
 /** One number of a node. */
 export interface Source {
   path: string;
@@ -12,17 +14,13 @@ export type Pinned = { is: 'node'; path: string } | { is: 'graph'; numbers: Sour
 
 /** What a graph can show. */
 export const WINDOWS_S = [10, 30, 120] as const;
-/** As many numbers as a graph has colours for. */
-export const NUMBERS_MAX = 8;
-export const PINNED_MAX = 60;
-const NAME_LENGTH_MAX = 1024;
 const VERSION = 1;
 
 /** The parts of the store that are needed. */
 export type Store = Pick<Storage, 'getItem' | 'setItem'>;
 
 function isName(value: unknown): value is string {
-  return typeof value === 'string' && value.length > 0 && value.length <= NAME_LENGTH_MAX;
+  return typeof value === 'string' && value.length > 0 && value.length <= STORED_NAME_LENGTH_MAX;
 }
 
 function isRecord(value: unknown): value is Record<string, unknown> {
@@ -39,7 +37,7 @@ function pinned(value: unknown): Pinned[] {
   if (!isRecord(value)) return [];
   if (value.is === 'node') return isName(value.path) ? [{ is: 'node', path: value.path }] : [];
   if (value.is !== 'graph' || !Array.isArray(value.numbers)) return [];
-  const sources = value.numbers.slice(0, NUMBERS_MAX).flatMap(source);
+  const sources = value.numbers.slice(0, GRAPH_NUMBERS_MAX).flatMap(source);
   const isFirst = (one: Source, at: number) =>
     sources.findIndex(({ path, field }) => path === one.path && field === one.field) === at;
   const numbers = sources.filter(isFirst);

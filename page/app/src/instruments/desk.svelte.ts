@@ -3,22 +3,10 @@
 // Owns whether something may be moved at all, and says why not. Values themselves are in `robot`.
 
 import { untrack } from 'svelte';
+import { GRAPH_NUMBERS_MAX, PINNED_MAX } from '../limits';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
-import {
-  type Pinned,
-  NUMBERS_MAX,
-  PINNED_MAX,
-  WINDOWS_S,
-  type Source,
-  keep,
-  kept,
-  moved,
-  read,
-  same,
-  store,
-  text,
-} from './board';
+import { type Pinned, WINDOWS_S, type Source, keep, kept, moved, read, same, store, text } from './board';
 import { Orders } from './orders';
 
 /** How often texts and small lines are drawn: faster nobody reads. */
@@ -94,7 +82,7 @@ export class Desk {
   toggle(source: Source): void {
     if (this.has(source)) {
       this.chosen = this.chosen.filter((one) => one.path !== source.path || one.field !== source.field);
-    } else if (this.chosen.length < NUMBERS_MAX) {
+    } else if (this.chosen.length < GRAPH_NUMBERS_MAX) {
       this.chosen = [...this.chosen, source];
     }
   }

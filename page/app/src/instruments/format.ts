@@ -2,6 +2,8 @@
 //
 // Owns ranges, and the sense of a slider; knows no robot. A value that does not fit is never made into text.
 
+import { FORMAT_FIELDS_MAX } from '../limits';
+
 /** `i32 power`: what a field is. */
 export interface Field {
   name: string;
@@ -19,15 +21,12 @@ const INTEGER = /^([iu])(8|16|32|64)$/;
 const FLOAT = /^f(32|64)$/;
 const FLOAT32_MAX = 3.4028234663852886e38;
 
-/** Formats have at most so many fields that are looked at. */
-const FIELDS_MAX = 4096;
-
 /** The fields of a format. Bytes without names and texts are one field, as in a recording. */
 export function fieldsOf(format: string): Field[] {
   const whole = format.trim();
   if (/^text\b/.test(whole)) return [{ name: 'data', kind: 'text' }];
   if (/^\S+\s+x\s+\d+$/.test(whole)) return [{ name: 'data', kind: 'bytes' }];
-  return whole.split(',', FIELDS_MAX).map((part) => {
+  return whole.split(',', FORMAT_FIELDS_MAX).map((part) => {
     const [kind = '', name = ''] = part.trim().split(/\s+/);
     return { name: name.toLowerCase(), kind: kind.replace(/^[<>]/, '') };
   });

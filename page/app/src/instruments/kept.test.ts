@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
+import { PINNED_MAX } from '../limits';
 import type { Node } from '../robot/recording';
-import { keep, kept, moved, type Pinned, PINNED_MAX, read, text } from './board';
+import { keep, kept, moved, type Pinned, read, text } from './board';
 import { guessed, read as readSetup, text as setupText } from './setup';
 
 const node = (path: string): Pinned => ({ is: 'node', path });

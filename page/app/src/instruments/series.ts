@@ -2,6 +2,8 @@
 //
 // Owns the join of their times, and what is said about the part that is visible; knows no drawing.
 
+import { DRAWN_MAX } from '../limits';
+
 /** Samples of one number, the oldest first; NaN is a gap. */
 export interface Samples {
   times: number[];
@@ -13,9 +15,6 @@ export interface Joined {
   times: number[];
   columns: (number | null | undefined)[][];
 }
-
-/** More samples than this of one number are thinned out, with the least and the greatest of each stretch kept. */
-export const DRAWN_MAX = 1500;
 
 /** The least and greatest of each stretch of time, and each gap. */
 export function thinned(samples: Samples, most = DRAWN_MAX): Samples {

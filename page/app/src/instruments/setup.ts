@@ -2,6 +2,7 @@
 //
 // Owns its text in the store of the browser; what is wrong in it is left out.
 
+import { STORED_NAME_LENGTH_MAX } from '../limits';
 import type { Node } from '../robot/recording';
 import { fieldsOf, isNumber } from './format';
 
@@ -27,7 +28,6 @@ export interface Setup {
 
 export const BUTTONS = 4;
 const VERSION = 1;
-const PATH_LENGTH_MAX = 1024;
 
 /** What a pad may move: one number that has a rest. */
 export function isMovable(node: Node): boolean {
@@ -56,7 +56,7 @@ export function guessed(nodes: readonly Node[]): Setup {
 }
 
 function path(value: unknown, otherwise: string): string {
-  return typeof value === 'string' && value.length <= PATH_LENGTH_MAX ? value : otherwise;
+  return typeof value === 'string' && value.length <= STORED_NAME_LENGTH_MAX ? value : otherwise;
 }
 
 function button(value: unknown): Button {

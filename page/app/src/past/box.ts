@@ -2,8 +2,8 @@
 //
 // Owns a connection of its own, because over one connection one recording comes at a time.
 
+import { FILE_BYTES_MAX, SILENCE_MS } from '../limits';
 import { Link } from '../link/link';
-import { FILE_BYTES_MAX, SILENCE_MS } from './limits';
 import { Wrong } from './wrong';
 
 const PIECE = 'stream:';

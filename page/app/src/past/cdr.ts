@@ -3,6 +3,8 @@
 // Owns the few shapes that recordings of a tree have: numbers, one text, or bytes of a known number. Other types have no shape
 // here, and are not shown. Reading believes nothing.
 
+import { SCHEMA_FIELDS_MAX } from '../limits';
+
 /** One field of a message. */
 export interface Part {
   name: string;
@@ -30,14 +32,13 @@ const NUMBERS = {
 
 /** Of a type that is made from a format, before the fields of the format. */
 const BEFORE = ['std_msgs/Header header', 'uint32 sequence'];
-const FIELDS_MAX = 1024;
 const HEAD_BYTES = 4;
 
 /** What a message of a node has; undefined if that is no type of a node. */
 export function partsOf(schema: string): Part[] | undefined {
   const [type = ''] = schema.split(/^=+$/m, 1);
-  const lines = type.split('\n', FIELDS_MAX + BEFORE.length + 1).filter((line) => line.trim() !== '');
-  if (BEFORE.some((line, at) => lines[at] !== line) || lines.length > FIELDS_MAX + BEFORE.length)
+  const lines = type.split('\n', SCHEMA_FIELDS_MAX + BEFORE.length + 1).filter((line) => line.trim() !== '');
+  if (BEFORE.some((line, at) => lines[at] !== line) || lines.length > SCHEMA_FIELDS_MAX + BEFORE.length)
     return undefined;
   const parts: Part[] = [];
   for (const line of lines.slice(BEFORE.length)) {

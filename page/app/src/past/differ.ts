@@ -3,7 +3,7 @@
 // Owns what a difference is. Two runs never give a value at the same moment, so a value is the same if the other run has it, or
 // passes it, at most a tenth of a second earlier or later. Knows no files and no robot.
 
-import { SLICE_MS } from './limits';
+import { NEAR_VALUES_MAX, SLICE_MS } from '../limits';
 
 /** The values of one field at their times, in order; each holds until the next one. NaN: there was none. */
 export interface Row {
@@ -42,8 +42,6 @@ export interface Differences {
 }
 
 const NEAR_S = 0.1;
-/** What comes so often says nothing within that time. */
-const NEAR_MAX = 256;
 
 /** The place of the value that holds at a time; -1: none yet. */
 function placeAt(row: Row, time: number): number {
@@ -58,7 +56,7 @@ function placeAt(row: Row, time: number): number {
 
 /** Whether values of a row, from one place to another, have a value or pass it. */
 function meets(value: number | string, row: Row, from: number, to: number): boolean {
-  if (to - from > NEAR_MAX) return true;
+  if (to - from > NEAR_VALUES_MAX) return true;
   let [least, greatest] = [Infinity, -Infinity];
   for (let at = Math.max(0, from); at <= to; at++) {
     const other = row.values[at];

@@ -2,9 +2,9 @@
 //
 // Owns which topics count, and how much is kept. Knows no files and no moment that is shown.
 
+import { CHANNELS_MAX, NUMBERS_MAX, SCHEMA_BYTES_MAX, TEXT_BYTES_MAX, TEXT_COST } from '../limits';
 import { isLines, type Line, nodeOf } from '../robot/recording';
 import { Message, type Part, partsOf } from './cdr';
-import { CHANNELS_MAX, NUMBERS_MAX, SCHEMA_BYTES_MAX, TEXT_BYTES_MAX, TEXT_COST } from './limits';
 import type { Sink } from './records';
 import { Track } from './track';
 import { Wrong } from './wrong';

@@ -2,9 +2,9 @@
 //
 // Owns what a person is told if that does not work. This is loaded when the first recording is opened.
 
+import { FILE_BYTES_MAX } from '../limits';
 import { words } from '../words';
 import { lastMinutes, Refused } from './box';
-import { FILE_BYTES_MAX } from './limits';
 import { read, type Read } from './read';
 import { Wrong } from './wrong';
 

@@ -14,8 +14,8 @@ import {
   u32,
   u64,
 } from './example';
+import { FILE_BYTES_MAX } from '../limits';
 import { nodesAt } from './past.svelte';
-import { FILE_BYTES_MAX } from './limits';
 import { unpacked } from './lz4';
 import { read, readNow } from './read';
 import { sumOf } from './sum';

@@ -2,7 +2,7 @@
 //
 // Owns what becomes of a recording that is damaged or cut off: what stands before that place counts.
 
-import { SLICE_MS, FILE_BYTES_MAX } from './limits';
+import { FILE_BYTES_MAX, SLICE_MS } from '../limits';
 import { Memory } from './memory';
 import { Walk } from './records';
 import { Wrong } from './wrong';

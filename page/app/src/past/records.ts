@@ -3,7 +3,7 @@
 // Owns their frames, chunks and checksums, and where something is wrong. What messages mean is known to who takes them. The
 // live form is read elsewhere, because it comes in pieces and has no chunks.
 
-import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX } from './limits';
+import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX } from '../limits';
 import { unpacked } from './lz4';
 import { sumOf } from './sum';
 import { type RecordingFault, Wrong } from './wrong';

@@ -2,11 +2,9 @@
 //
 // Owns the reading of lines of `/programs` and `/diagram`; docs/protocol.md has what the latter say. Believes nothing.
 
+import { VALUE_LETTERS_MAX } from '../limits';
 import type { Place, Thread, DebuggerState, Variable } from '../robot/debugger.svelte';
 import type { Line } from '../robot/recording';
-
-/** Of a value that a person is shown. */
-const LETTERS_MAX = 1000;
 
 /** How many lines are not later than a time. */
 export function countUntil(lines: readonly Line[], time: number): number {
@@ -71,7 +69,7 @@ export class Steps {
     const variables = [...this.#variables].map(([name, value]): Variable => ({
       name,
       type: typeof value === 'number' && !Number.isInteger(value) ? 'float' : '',
-      value: (typeof value === 'string' ? value : JSON.stringify(value)).slice(0, LETTERS_MAX),
+      value: (typeof value === 'string' ? value : JSON.stringify(value)).slice(0, VALUE_LETTERS_MAX),
     }));
     return {
       state: 'past',

@@ -2,11 +2,11 @@
 //
 // Owns how they are kept: a column for each number, and texts beside them. Knows no files and no moment that is shown.
 
+import { TEXT_COST } from '../limits';
 import type { Fields, Node } from '../robot/recording';
 import type { Samples } from '../instruments/series';
 import { Column } from './column';
 import { Message, type Part } from './cdr';
-import { TEXT_COST } from './limits';
 
 /** What there is room for still, of a recording as a whole. */
 export interface Room {

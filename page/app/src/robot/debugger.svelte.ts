@@ -3,6 +3,7 @@
 // Owns tags of orders and the newest state. What an order means is known to the robot; docs/protocol.md has the table.
 
 import { SvelteMap } from 'svelte/reactivity';
+import { ORDERS_WAITING_MAX } from '../limits';
 import type { Link } from '../link/link';
 
 /** A block of a diagram. */
@@ -58,8 +59,7 @@ export interface Breakpoint {
   hits: number;
 }
 
-/** Orders that wait for their answers; the robot takes 256. */
-const WAITING_MAX = 100;
+/** The protocol has 32 bits for it. */
 const TAG_MAX = 4294967295;
 
 export class Debugger {
@@ -79,7 +79,7 @@ export class Debugger {
 
   /** Asks for something; the answer says whether it was done. Undefined: there is none, because the robot is gone. */
   async ask(order: string): Promise<Answer | undefined> {
-    if (this.#waiting.size >= WAITING_MAX) return undefined;
+    if (this.#waiting.size >= ORDERS_WAITING_MAX) return undefined;
     this.#tag = (this.#tag + 1) % TAG_MAX;
     const tag = this.#tag;
     if (!this.link.request(`debug:${tag} ${order}`)) return undefined;

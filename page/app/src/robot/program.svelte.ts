@@ -3,6 +3,7 @@
 // Owns what was heard of them over the control port and of their folder. Knows no sensors and no diagrams.
 
 import { SvelteMap } from 'svelte/reactivity';
+import { PROGRAM_BYTES_MAX } from '../limits';
 import type { Link } from '../link/link';
 
 /** A program in the robot's folder. */
@@ -31,8 +32,6 @@ export interface Question {
 /** Lines of output that are kept, and letters of one of them. */
 const LINES = 1000;
 const LETTERS = 4000;
-/** Bytes of a program that the control port takes, less its name. */
-const BYTES_MAX = (16 << 20) - 1024;
 const KINDS = ['print', 'error', 'info', 'mail'] as const;
 
 /** Whether a name can be one of a program; the robot decides. */
@@ -106,7 +105,7 @@ export class Programs {
   /** Sends a file to the robot. */
   async upload(file: File): Promise<boolean> {
     if (!isName(file.name)) this.refusal = 'name';
-    else if (file.size > BYTES_MAX) this.refusal = 'size';
+    else if (file.size > PROGRAM_BYTES_MAX) this.refusal = 'size';
     else {
       const head = new TextEncoder().encode(`file:${file.name}:`);
       const content = new Uint8Array(await file.arrayBuffer());

@@ -3,13 +3,12 @@
 // Owns a second connection, which is there while something is wanted: over one connection one recording comes at a time. What
 // comes of these nodes is known to `robot`.
 
+import { WANTED_PATHS_MAX } from '../limits';
 import { Link } from '../link/link';
 import { type Fields, type Line, type Node, Recording } from './recording';
 
 /** How many pictures in a second come at most. */
 const RATE_HZ = 10;
-/** As many patterns as the control port takes. */
-const PATHS_MAX = 64;
 const STREAM = 'stream:';
 
 /** Who takes what was wanted. */
@@ -21,7 +20,7 @@ interface Taker {
 
 /** The request for some nodes; a path with a sign that a request gives a meaning to cannot be asked for. */
 export function request(paths: Iterable<string>): string {
-  const plain = [...paths].filter((path) => !/[,;*]/.test(path)).slice(0, PATHS_MAX);
+  const plain = [...paths].filter((path) => !/[,;*]/.test(path)).slice(0, WANTED_PATHS_MAX);
   return plain.length === 0 ? '' : `${STREAM}${plain.join(',')};hz=${RATE_HZ}`;
 }
 

@@ -1,0 +1,63 @@
+// Every limit of the page.
+//
+// Owns the numbers only; the code that enforces each one names it from here. How a view is laid out stands with it, and what a
+// format or the protocol says stands with what reads it.
+
+/** Bytes of a recording, and of the last minutes of a robot, which are 16 MiB unless its `trikd` is told otherwise. */
+export const FILE_BYTES_MAX = 64 << 20;
+/** Bytes of one record, and of what comes out of a chunk. */
+export const RECORD_BYTES_MAX = 16 << 20;
+/** Bytes that come out of one compressed byte: lz4 reaches 255. */
+export const INFLATION_MAX = 256;
+/** Bytes that come out of all chunks. */
+export const INFLATED_BYTES_MAX = 1 << 30;
+/** Channels that are looked at, as the recorder makes them at most. */
+export const CHANNELS_MAX = 8192;
+/** Bytes of the text of a message type. */
+export const SCHEMA_BYTES_MAX = 256 << 10;
+/** Fields of a message type that are looked at. */
+export const SCHEMA_FIELDS_MAX = 1024;
+/** Numbers of a recording that are kept, of eight bytes each. */
+export const NUMBERS_MAX = 16 << 20;
+/** Bytes of texts, lines and pictures of a recording that are kept. */
+export const TEXT_BYTES_MAX = 32 << 20;
+/** What a text costs besides its letters. */
+export const TEXT_COST = 64;
+/** The page does something else after so much reading. */
+export const SLICE_MS = 30;
+/** A robot that sends nothing for so long will not. */
+export const SILENCE_MS = 15_000;
+/** Letters that are shown of a value of a recorded diagram. */
+export const VALUE_LETTERS_MAX = 1000;
+/** How much later than the other one a recording may be shown that is compared: a day. */
+export const OFFSET_S_MAX = 86_400;
+/** Values within the time in which two runs may differ; what comes so often says nothing there. */
+export const NEAR_VALUES_MAX = 256;
+/** Differences of two recordings that are listed. */
+export const DIFFERENCES_MAX = 200;
+
+/** Bytes of a program that the control port takes, less its name. */
+export const PROGRAM_BYTES_MAX = (16 << 20) - 1024;
+/** Bytes of a program that the server gives to an editor. */
+export const EDITED_BYTES_MAX = 128 << 10;
+/** Bytes of a configuration that the filesystem takes. */
+export const CONFIGURATION_BYTES_MAX = 1 << 20;
+/** Megabytes of a file with a world. The server takes 6 MiB of an order, and Base64 has four letters for three bytes. */
+export const WORLD_FILE_MB_MAX = 4;
+/** Nodes that are sampled while they are shown: as many patterns as the control port takes. */
+export const WANTED_PATHS_MAX = 64;
+/** Orders to the debugger that wait for their answers; the robot takes 256. */
+export const ORDERS_WAITING_MAX = 100;
+
+/** Fields of a format that are looked at. */
+export const FORMAT_FIELDS_MAX = 4096;
+/** Numbers of one node that are shown one by one. */
+export const FIELDS_SHOWN_MAX = 1024;
+/** Numbers of one graph: as many as it has colours for. */
+export const GRAPH_NUMBERS_MAX = 8;
+/** More samples than this of one number are thinned out, with the least and the greatest of each stretch kept. */
+export const DRAWN_MAX = 1500;
+/** Nodes and graphs of a dashboard. */
+export const PINNED_MAX = 60;
+/** Letters of a path or a name in the store of the browser. */
+export const STORED_NAME_LENGTH_MAX = 1024;
