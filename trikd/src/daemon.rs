@@ -380,10 +380,10 @@ impl Parts {
     fn look_after(&self, ports: String, socket: Socket) {
         let (status, socket) = (Rc::new(self.status(ports)), Rc::new(socket));
         let answer = move || status::serve(status.clone(), socket.clone());
-        spawn_local(panics::again("status", answer));
+        spawn_local(panics::restart_task_on_panic("status", answer));
         let (guardian, programs) = (getppid(), self.programs.clone());
-        let look = move || standstill::look(guardian, programs.clone());
-        spawn_local(panics::again("standstill", look));
+        let watch = move || standstill::watch(guardian, programs.clone());
+        spawn_local(panics::restart_task_on_panic("standstill", watch));
     }
 
     fn keys(&self) -> Rc<Keys> {
@@ -449,7 +449,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     });
     heartbeat::start().map_err(Error::thread)?;
     // Behind the start of the threads that shall not have it.
-    priority::take(Rank::Serving);
+    priority::set(Rank::Serving);
     let supervisor = spawn_local(parts.supervisor().run());
     match parts.rest.now(limits::REST_LAST_MS).await {
         Err(why) => tracing::warn!(target: log::TREE, "at the start: {why}"),

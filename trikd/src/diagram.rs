@@ -196,7 +196,7 @@ fn run(
     loop {
         let now = since(start);
         let goes_on = diagram.step(now, robot, watch);
-        diagram.tell(now, !goes_on, host)?;
+        diagram.report(now, !goes_on, host)?;
         watch.report(diagram.machine(), now, host)?;
         if !goes_on {
             return watch.last(diagram.machine(), now, host);
@@ -241,23 +241,23 @@ fn hear(
             let answer = live::patch(session, (when_gone, &path), &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
             diagram.changed();
-            diagram.tell(now, true, host)?;
+            diagram.report(now, true, host)?;
         }
         Incoming::Set(text) => {
             let (session, mut driven) = diagram.parts(robot);
             let answer = live::set(session, &text, &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
             diagram.changed();
-            diagram.tell(now, true, host)?;
+            diagram.report(now, true, host)?;
         }
         Incoming::Debug { client, tag, order } => {
             let answer = diagram.order((tag, &order), now, robot, watch);
             host.debug(client, &answer)?;
-            diagram.tell(now, true, host)?;
+            diagram.report(now, true, host)?;
         }
         Incoming::DebugLeft => {
             diagram.left(now, robot, watch);
-            diagram.tell(now, true, host)?;
+            diagram.report(now, true, host)?;
         }
         // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
         Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,

@@ -43,7 +43,7 @@ impl Feedback {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("feedback".to_owned())
-            .spawn(move || panics::keep(|| serve(&root, &shown)))?;
+            .spawn(move || panics::restart_on_panic(|| serve(&root, &shown)))?;
         Ok(Self { show: Some(show) })
     }
 

@@ -27,7 +27,7 @@ pub fn start() -> io::Result<()> {
     };
     std::thread::Builder::new()
         .name("heartbeat".to_owned())
-        .spawn(move || panics::keep(watch))?;
+        .spawn(move || panics::restart_on_panic(watch))?;
     tokio::task::spawn_local(async move {
         loop {
             beats.fetch_add(1, Ordering::Relaxed);

@@ -24,7 +24,7 @@ pub fn watch(tree: &Path) -> io::Result<Receiver<&'static str>> {
     let (tell, told) = channel(16);
     let path = tree.join("keys/device");
     let work = move || {
-        priority::take(Rank::Rest);
+        priority::set(Rank::Rest);
         while !tell.is_closed() {
             // Errors and ends alike: the tree may come, or come back.
             let _ = File::open(&path)
@@ -34,7 +34,7 @@ pub fn watch(tree: &Path) -> io::Result<Receiver<&'static str>> {
     };
     std::thread::Builder::new()
         .name("keys".to_owned())
-        .spawn(move || panics::keep(work))?;
+        .spawn(move || panics::restart_on_panic(work))?;
     Ok(told)
 }
 

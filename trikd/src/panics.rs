@@ -43,14 +43,14 @@ impl Panics {
 }
 
 /// The work of a thread, which begins again after a panic until it ends by itself.
-pub fn keep(mut work: impl FnMut()) {
+pub fn restart_on_panic(mut work: impl FnMut()) {
     while catch_unwind(AssertUnwindSafe(&mut work)).is_err() {
         std::thread::sleep(Duration::from_millis(limits::PANIC_MS));
     }
 }
 
 /// A task that begins again after a panic until it ends by itself.
-pub async fn again<F>(name: &'static str, task: impl Fn() -> F)
+pub async fn restart_task_on_panic<F>(name: &'static str, task: impl Fn() -> F)
 where
     F: Future<Output = ()> + 'static,
 {
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn a_thread_that_fails_begins_again_with_what_it_had() {
         let mut turns = 0;
-        keep(|| {
+        restart_on_panic(|| {
             turns += 1;
             assert!(turns > 2, "the first two turns fail");
         });
@@ -102,7 +102,7 @@ mod tests {
                 assert!(turns.get() > 1, "the first turn fails");
             }
         };
-        tokio::task::LocalSet::new().block_on(&runtime, again("a test", task));
+        tokio::task::LocalSet::new().block_on(&runtime, restart_task_on_panic("a test", task));
         assert_eq!(turns.get(), 2);
     }
 }

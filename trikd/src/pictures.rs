@@ -115,7 +115,7 @@ impl Pictures {
             let (path, newest, flag) = (self.path.clone(), self.newest.clone(), self.reads.clone());
             std::thread::Builder::new()
                 .name("pictures".to_owned())
-                .spawn(move || panics::keep(|| read_for(&path, &newest, &flag)))?;
+                .spawn(move || panics::restart_on_panic(|| read_for(&path, &newest, &flag)))?;
             *reads = true;
         }
         Ok(watcher)

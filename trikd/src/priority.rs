@@ -18,7 +18,7 @@ pub enum Rank {
 
 /// Gives the calling thread, and what it starts from now on, its rank. Only root can go before others: everybody else
 /// keeps what they have, and programs go behind them all the same.
-pub fn take(rank: Rank) {
+pub fn set(rank: Rank) {
     let nice = match rank {
         Rank::Rest => limits::NICE_REST,
         Rank::Serving => limits::NICE_SERVING,

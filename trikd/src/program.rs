@@ -521,7 +521,7 @@ impl Supervisor {
         let now = Instant::now();
         self.report_dropped(current.meter.take_dropped(now, true));
         while let Some(said) = current.meter.release(now, true) {
-            self.tell(&said, &current.name);
+            self.report_output(&said, &current.name);
         }
         let name = &current.name;
         let seconds = current.since.elapsed().as_secs_f64();

@@ -45,7 +45,7 @@ impl Sampler {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("sampler".to_owned())
-            .spawn(move || panics::keep(|| sample(&root, &asked, &publish)))?;
+            .spawn(move || panics::restart_on_panic(|| sample(&root, &asked, &publish)))?;
         Ok(Self {
             ask,
             newest,

@@ -189,7 +189,7 @@ fn is_inside(folder: &Path, path: &Path) -> bool {
 ///
 /// # Errors
 /// The name is none, a folder is in the way, or the disk refuses.
-pub fn keep(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, Refusal> {
+pub fn store(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, Refusal> {
     let path = locate(folder, name)?;
     let shown = || String::from_utf8_lossy(name).into_owned();
     let fails = |error: io::Error| Refusal::Disk(shown(), error.into());
@@ -344,9 +344,9 @@ mod tests {
     fn uploads_are_whole_binary_and_in_folders_that_are_made() {
         let scratch = tempdir().unwrap();
         let folder = scratch.path().join("new/scripts");
-        let path = keep(&folder, b"a/b.bin", b"x\0\xff").unwrap();
+        let path = store(&folder, b"a/b.bin", b"x\0\xff").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"x\0\xff");
-        keep(&folder, b"a/b.bin", b"#!/bin/sh\n").unwrap();
+        store(&folder, b"a/b.bin", b"#!/bin/sh\n").unwrap();
         let mode =
             std::os::unix::fs::PermissionsExt::mode(&fs::metadata(&path).unwrap().permissions());
         assert_eq!(mode & 0o111, 0o111);
@@ -359,13 +359,13 @@ mod tests {
                 .contains("there is no program 'none.js'")
         );
         assert!(
-            keep(&folder, b"a", b"")
+            store(&folder, b"a", b"")
                 .unwrap_err()
                 .to_string()
                 .contains("folder of this name")
         );
         assert!(
-            keep(&folder, b"a/b.bin/c", b"")
+            store(&folder, b"a/b.bin/c", b"")
                 .unwrap_err()
                 .to_string()
                 .contains("was not kept")
@@ -380,7 +380,7 @@ mod tests {
         fs::create_dir_all(&folder).unwrap();
         std::os::unix::fs::symlink(scratch.path().join("outside"), folder.join("l")).unwrap();
         assert!(
-            keep(&folder, b"l/y.js", b"")
+            store(&folder, b"l/y.js", b"")
                 .unwrap_err()
                 .to_string()
                 .contains("link")
@@ -393,7 +393,7 @@ mod tests {
         );
         assert!(!scratch.path().join("outside/y.js").exists());
         assert!(
-            keep(&folder, b"l/new/y.js", b"")
+            store(&folder, b"l/new/y.js", b"")
                 .unwrap_err()
                 .to_string()
                 .contains("link")
@@ -404,7 +404,7 @@ mod tests {
         );
         std::os::unix::fs::symlink(scratch.path().join("outside/x.js"), folder.join("x.js"))
             .unwrap();
-        keep(&folder, b"x.js", b"new").unwrap();
+        store(&folder, b"x.js", b"new").unwrap();
         assert_eq!(fs::read(scratch.path().join("outside/x.js")).unwrap(), b"");
         assert_eq!(fs::read(folder.join("x.js")).unwrap(), b"new");
     }
@@ -437,7 +437,7 @@ mod tests {
                 }
             });
             for _ in 0..300 {
-                let _ = keep(&folder, b"f/deep/x.js", b"");
+                let _ = store(&folder, b"f/deep/x.js", b"");
             }
             is_over.store(true, Ordering::Relaxed);
         });

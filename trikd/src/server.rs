@@ -123,7 +123,7 @@ impl Port {
                 let serve = move |guest| serve(service.clone(), guest);
                 accept(name, listener.clone(), admission.clone(), serve)
             };
-            tokio::task::spawn_local(panics::again(name, accept));
+            tokio::task::spawn_local(panics::restart_task_on_panic(name, accept));
         }
     }
 }

@@ -16,7 +16,7 @@ use tokio::time::{MissedTickBehavior, interval};
 const WHO: &str = "trikd, whose guardian stood still";
 
 /// Looks after the guardian for ever. While it stands still nothing moves.
-pub async fn look(guardian: Pid, programs: Rc<Programs>) {
+pub async fn watch(guardian: Pid, programs: Rc<Programs>) {
     let mut looks = interval(Duration::from_millis(limits::GUARDIAN_LOOK_MS));
     looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {

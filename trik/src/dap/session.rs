@@ -321,7 +321,9 @@ impl<'a> Session<'a> {
             (Some(change), _) => change.sentence(self.launch.locale()),
             (None, Some(token)) if stop.text.is_empty() => {
                 let what = words::token(&token.full_name(), &token.value);
-                words::said(self.launch.locale(), what).trim().to_owned()
+                words::in_locale(self.launch.locale(), what)
+                    .trim()
+                    .to_owned()
             }
             (None, _) => stop.text,
         };

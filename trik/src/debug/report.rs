@@ -146,7 +146,7 @@ impl Change {
         };
         let (was, is) = (held(&self.was), held(&self.is));
         let words = words::was_and_is(&self.variable, [&was[0], &was[1]], [&is[0], &is[1]]);
-        words::said(locale, words)
+        words::in_locale(locale, words)
     }
 }
 
@@ -157,9 +157,9 @@ impl Thread {
             ("waits", "time") => words::waits_more(self.left_ms),
             ("waits", "device") => words::waits_for(&self.port),
             ("waits", what) => words::waits_for(what),
-            (does, _) => words::does(does),
+            (does, _) => words::activity(does),
         };
-        words::said(locale, words)
+        words::in_locale(locale, words)
     }
 }
 

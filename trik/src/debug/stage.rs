@@ -158,9 +158,9 @@ impl<'a> Stage<'a> {
 fn explained(why: &Refused, locale: Locale) -> String {
     match why {
         Refused::Diagram(why) => problems(why, locale),
-        Refused::Flow(flow::Refused::Ended) => words::said(locale, words::has_ended()),
+        Refused::Flow(flow::Refused::Ended) => words::in_locale(locale, words::has_ended()),
         Refused::Flow(flow::Refused::Mistakes(mistakes)) => lines(mistakes, locale),
-        Refused::OtherLanguage => words::said(locale, words::other_language()),
+        Refused::OtherLanguage => words::in_locale(locale, words::other_language()),
     }
 }
 
@@ -178,7 +178,7 @@ fn ending(outcome: &Outcome, locale: Locale) -> String {
         },
         Verdict::Unknown => words::GIVEN_UP,
     };
-    words::said(locale, words::ending(what, seconds))
+    words::in_locale(locale, words::ending(what, seconds))
 }
 
 impl Target for Stage<'_> {
@@ -250,7 +250,7 @@ impl Target for Stage<'_> {
             Err(why) => return Ok(Changed::Wrong(why)),
         };
         let Some(trial) = &mut self.trial else {
-            let why = words::said(locale, words::has_ended());
+            let why = words::in_locale(locale, words::has_ended());
             return Ok(Changed::CannotBe(why));
         };
         let patched = debugged::patch(trial, &mut self.program, &version);

@@ -8,7 +8,7 @@ use super::listing::Listing;
 use super::report::{At, Report, State, Stop};
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
-use words::said;
+use words::in_locale;
 
 /// The time of the program.
 pub(crate) fn time(told: &Report) -> String {
@@ -21,12 +21,12 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
         return Vec::new();
     };
     let past = match told.state {
-        State::Past => said(locale, words::past()),
+        State::Past => in_locale(locale, words::past()),
         State::Running | State::Searching | State::Stopped | State::Ended => String::new(),
     };
     let thread = match stop.name.as_str() {
         "" => String::new(),
-        name => said(locale, words::thread(&harmless(name))),
+        name => in_locale(locale, words::thread(&harmless(name))),
     };
     let why = why((told, stop), listing, locale);
     let mut lines = vec![format!("{past}{}{thread}: {why}", time(told))];
@@ -34,7 +34,7 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
     let token = told.at().and_then(|at| at.token.as_ref());
     lines.extend(token.map(|token| {
         let (port, value) = (harmless(&token.full_name()), harmless(&token.value));
-        said(locale, words::token(&port, &value))
+        in_locale(locale, words::token(&port, &value))
     }));
     lines
 }
@@ -46,13 +46,13 @@ fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale
         "condition" => words::condition(number, &harmless(&stop.text)),
         "change" => {
             let change = stop.change.clone().unwrap_or_default();
-            let breakpoint = said(locale, words::breakpoint(number));
+            let breakpoint = in_locale(locale, words::breakpoint(number));
             let told = format!("{breakpoint}: {}", harmless(&change.sentence(locale)));
             let by = change.by.as_ref();
             return match by.and_then(|at| Some((listing?, at))) {
                 Some((listing, at)) if listing.has(&at.id) => {
                     let line = listing.line_of(&at.id);
-                    told + &said(locale, words::by_line(line))
+                    told + &in_locale(locale, words::by_line(line))
                 }
                 Some(_) | None => told,
             };
@@ -62,7 +62,7 @@ fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale
         "pause" if told.ms == 0 => words::first(),
         reason => words::reason(&harmless(reason)),
     };
-    said(locale, words)
+    in_locale(locale, words)
 }
 
 fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
@@ -72,7 +72,7 @@ fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
             let line = listing.line_of(&at.id);
             format!("> {line:3} {}", listing.text(line))
         }
-        Some(_) => said(locale, words::another_runs(&diagram, &block)),
+        Some(_) => in_locale(locale, words::another_runs(&diagram, &block)),
         // Of a data-flow program people know the caption.
         None if let Some(token) = &at.token => {
             format!(">     {diagram}, {}", harmless(&token.block))

@@ -99,7 +99,7 @@ pub(crate) enum Channel {
 /// Why a version is refused, a line for each problem.
 pub(crate) fn problems(why: &Refused, locale: Locale) -> String {
     match why {
-        Refused::Ended => words::said(locale, words::has_ended()),
+        Refused::Ended => words::in_locale(locale, words::has_ended()),
         Refused::Mistakes(_) | Refused::Occupied(_) => lines(why.problems(), locale),
     }
 }

@@ -418,7 +418,7 @@ impl<'a> Terminal<'a> {
     }
 
     fn page(&self, points: &[Value]) -> Result<(), Error> {
-        let said = |words: Words| words::said(self.source.1, words);
+        let said = |words: Words| words::in_locale(self.source.1, words);
         for point in points {
             let text = |name: &str| {
                 let text = point.get(name).and_then(Value::as_str);

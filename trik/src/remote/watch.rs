@@ -235,7 +235,7 @@ impl<'a> Picture<'a> {
         for port in told.waiting.iter().take(limits::WATCH_LINES_MAX) {
             let name = harmless(&port.full_name());
             let words = words::waiting(&name, port.count, port.lost);
-            lines.push(words::said(self.locale, words));
+            lines.push(words::in_locale(self.locale, words));
         }
         lines
     }

@@ -370,7 +370,7 @@ impl Program for JavaScript {
 
     fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
         if let Some(lines) = &*self.stage.lines.borrow() {
-            lines.tell(locale, tell);
+            lines.describe(locale, tell);
         }
     }
 }

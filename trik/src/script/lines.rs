@@ -72,7 +72,7 @@ impl Lines {
     }
 
     /// The same as values that change.
-    pub fn tell(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+    pub fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
         for thread in self.0.iter().filter(|thread| thread.ended_ms.is_none()) {
             let line = words::line(&thread.file, thread.line, locale);
             tell(Group::Block, &thread.name, &line);

@@ -521,7 +521,7 @@ impl Program for Python {
 
     fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
         if let Some(lines) = &self.lines {
-            lines.tell(locale, tell);
+            lines.describe(locale, tell);
         }
     }
 

@@ -101,7 +101,7 @@ impl Debugging {
     }
 
     /// Tells all who debug what is new, if it is time; after an order it always is.
-    pub(super) fn tell(&mut self, now: u32, is_time: bool, host: &Host) -> io::Result<()> {
+    pub(super) fn report(&mut self, now: u32, is_time: bool, host: &Host) -> io::Result<()> {
         let is_stopped = self.desk.is_stopped();
         let is_due = now.saturating_sub(self.told_at) >= limits::WATCH_MS;
         if !is_time && !is_due && is_stopped == self.was_stopped {

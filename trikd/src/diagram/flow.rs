@@ -119,7 +119,7 @@ impl Flow {
             }
             self.warned = warnings.len();
             watch.report_flow(self.desk.machine(), has_fired, now, host)?;
-            self.tell(now, status != Status::Running, host)?;
+            self.report(now, status != Status::Running, host)?;
             if status != Status::Running {
                 return Ok(());
             }
@@ -141,7 +141,7 @@ impl Flow {
     }
 
     /// Tells all who debug what is new, if it is time; after an order it always is.
-    fn tell(&mut self, now: u32, is_time: bool, host: &Host) -> io::Result<()> {
+    fn report(&mut self, now: u32, is_time: bool, host: &Host) -> io::Result<()> {
         let is_stopped = self.desk.is_stopped();
         let is_due = now.saturating_sub(self.told_at) >= limits::WATCH_MS;
         if !is_time && !is_due && is_stopped == self.was_stopped {
@@ -175,23 +175,23 @@ impl Flow {
             Incoming::Patch(_, path) => {
                 let answer = self.patch(&path, robot, watch.locale());
                 host.changed(answer.is_changed, &answer.text)?;
-                self.tell(now, true, host)?;
+                self.report(now, true, host)?;
             }
             Incoming::Set(text) => {
                 let answer = self.set(&text, watch.locale());
                 host.changed(answer.is_changed, &answer.text)?;
-                self.tell(now, true, host)?;
+                self.report(now, true, host)?;
             }
             Incoming::Debug { client, tag, order } => {
                 let answer = self.desk.order((tag, &order));
                 self.motors.settle(self.desk.is_at_rest(), robot);
                 host.debug(client, &answer)?;
-                self.tell(now, true, host)?;
+                self.report(now, true, host)?;
             }
             Incoming::DebugLeft => {
                 self.desk.left();
                 self.motors.settle(self.desk.is_at_rest(), robot);
-                self.tell(now, true, host)?;
+                self.report(now, true, host)?;
             }
             Incoming::Direct(_) => host.error("a data-flow program takes no direct commands")?,
             // The caller knows.

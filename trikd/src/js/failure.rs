@@ -94,7 +94,7 @@ fn place<'a>(frame: &Frame, program: &'a str) -> Option<wording::Place<'a>> {
 
 /// Where in the program's text a function of the host was called from: the file, empty for the program itself, and the
 /// line. It calls nothing, so that a program runs the same whether somebody asks or not.
-pub fn here(ctx: &Ctx<'_>) -> Option<(String, u32)> {
+pub fn call_site(ctx: &Ctx<'_>) -> Option<(String, u32)> {
     // Only an error has a backtrace, and that of a text that cannot be parsed has it at once.
     let _ = ctx.json_parse("");
     let thrown = ctx.catch().into_object();

@@ -58,7 +58,7 @@ impl Own {
     /// Tells who looks on at which line the program is, if somebody does.
     pub fn stand(&self, ctx: &Ctx<'_>) {
         if self.platform.is_watched()
-            && let Some((file, line)) = failure::here(ctx)
+            && let Some((file, line)) = failure::call_site(ctx)
         {
             self.platform.stand(&self.slot, &file, line);
         }

@@ -66,7 +66,7 @@ impl Launch {
         // Fails only for who leads a group already, which is what is wanted.
         let _ = setsid();
         SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
-        priority::take(Rank::Program);
+        priority::set(Rank::Program);
         let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
         let memory = self.memory_mib.saturating_mul(1 << 20);
         limit(Resource::RLIMIT_AS, memory)?;

@@ -87,7 +87,7 @@ impl Rest {
         let root: PathBuf = root.to_owned();
         std::thread::Builder::new()
             .name("rest".to_owned())
-            .spawn(move || panics::keep(|| serve(&root, &asked)))?;
+            .spawn(move || panics::restart_on_panic(|| serve(&root, &asked)))?;
         Ok(Self { ask })
     }
 
@@ -109,7 +109,7 @@ impl Rest {
 }
 
 fn serve(root: &Path, asked: &Receiver<Answer>) {
-    priority::take(Rank::Rest);
+    priority::set(Rank::Rest);
     let tree = Tree::new(root);
     let stop = tree.node("stop", Access::Write);
     while let Ok(first) = asked.recv() {

@@ -30,11 +30,11 @@ impl Supervisor {
     /// Something that the program of now said, for all who hear.
     fn say(&self, said: &Message) {
         let name = self.current.as_ref().map_or("", |current| &current.name);
-        self.tell(said, name);
+        self.report_output(said, name);
     }
 
     /// Something that the program with this name said.
-    pub(super) fn tell(&self, said: &Message, name: &str) {
+    pub(super) fn report_output(&self, said: &Message, name: &str) {
         self.broadcast(&said.text);
         let record = &self.around.record;
         if record.is_heard() {
@@ -89,7 +89,7 @@ impl Supervisor {
         if text.len() <= limits::MESSAGE_BYTES {
             let said = Message::new(manner, text);
             if let Some(said) = current.meter.offer(said, Instant::now()) {
-                self.tell(&said, &current.name);
+                self.report_output(&said, &current.name);
             }
         }
     }

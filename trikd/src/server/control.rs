@@ -136,12 +136,12 @@ impl Session {
         }
     }
 
-    async fn keep(&self, name: &[u8], content: &[u8]) {
+    async fn store(&self, name: &[u8], content: &[u8]) {
         let folder = self.control.scripts.clone();
         let (name, content) = (name.to_owned(), content.to_owned());
         // A disk may be slow; everybody else is served meanwhile.
         let kept =
-            tokio::task::spawn_blocking(move || scripts::keep(&folder, &name, &content)).await;
+            tokio::task::spawn_blocking(move || scripts::store(&folder, &name, &content)).await;
         match kept {
             Ok(Ok(path)) => {
                 self.control.feedback.show(Moment::Uploaded);
@@ -203,7 +203,7 @@ impl Handler for Session {
             Request::Stop => self.command(Command::Stop("a client")).await,
             Request::File { name, content } => {
                 if self.may_control() {
-                    self.keep(name, content).await;
+                    self.store(name, content).await;
                 }
             }
             Request::Run(name) => {

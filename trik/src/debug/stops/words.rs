@@ -5,7 +5,7 @@
 use lang_text::problem::{Locale, Words};
 
 /// A sentence of these words.
-pub(crate) fn said(locale: Locale, words: Words) -> String {
+pub(crate) fn in_locale(locale: Locale, words: Words) -> String {
     words.in_locale(locale).to_owned()
 }
 
@@ -214,7 +214,7 @@ pub(crate) fn waits_for(what: &str) -> Words {
 }
 
 /// By its word in the protocol.
-pub(crate) fn does(word: &str) -> Words {
+pub(crate) fn activity(word: &str) -> Words {
     let russian = match word {
         "enters" => "входит",
         "gives way" => "уступает",
