@@ -364,3 +364,54 @@ fn a_number_that_a_text_cannot_take_is_not_set() {
     runs(&mut desk, &mut robot, 50, 60);
     assert_eq!(last(&robot), "power M3 2");
 }
+
+/// How many items of a list an answer says that it leaves out.
+fn left_out(answer: &str, list: &str) -> usize {
+    let Some((_, rest)) = answer.split_once(&format!("\"{list}_left_out\":")) else {
+        return 0;
+    };
+    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().expect("a number")
+}
+
+#[test]
+fn what_is_too_much_to_tell_is_cut_and_counted() {
+    use crate::limits::{TOLD_BYTES, TOLD_CHARACTERS_MAX};
+    use std::fmt::Write as _;
+    const VALUES: usize = 40;
+    const PAIRS: usize = 300;
+    // Texts of which each is cut by itself, and is one of too many.
+    let long = "x".repeat(2 * TOLD_CHARACTERS_MAX);
+    let mut text = "T Value generator\nR Message receiver\n".to_owned();
+    for at in 0..VALUES {
+        let _ = writeln!(text, "V{at} Variable {{variable=v{at} = '{long}'}}");
+        let _ = writeln!(text, "S{at} Say\nV{at}.OUT > S{at}.DATA");
+    }
+    // Pairs of which the other half never comes.
+    for at in 0..PAIRS {
+        let _ = writeln!(text, "Z{at} Zip flows");
+        let _ = writeln!(text, "T.OUT > Z{at}.DATA1\nR.OUT > Z{at}.DATA2");
+    }
+    let (mut desk, mut robot) = (desk(&text), Robot::default());
+    told(&mut desk, "attach");
+    let before = told(&mut desk, "look");
+    for list in ["variables", "ports", "waiting"] {
+        assert_eq!(left_out(&before, list), 0, "{before}");
+    }
+    runs(&mut desk, &mut robot, 0, 20);
+    let state = told(&mut desk, "look");
+    for (list, item, all) in [
+        ("variables", "{\"name\":\"v", VALUES),
+        // Those of the variables, and that of the value that all pairs get.
+        ("ports", "\"port\":\"OUT\"", VALUES + 1),
+        ("waiting", "\"port\":\"DATA1\"", PAIRS),
+    ] {
+        let (shown, left_out) = (state.matches(item).count(), left_out(&state, list));
+        assert!(shown > 0 && left_out > 0, "{list}: {shown}, {left_out}");
+        assert_eq!(shown + left_out, all, "{list}");
+    }
+    assert!(!state.contains(&"x".repeat(TOLD_CHARACTERS_MAX + 1)));
+    // Three lists, each with the one item more that has filled it, and what is told beside them.
+    let most = 3 * (TOLD_BYTES + TOLD_CHARACTERS_MAX + 1000) + 1000;
+    assert!(state.len() < most, "{} of {most} bytes", state.len());
+}
