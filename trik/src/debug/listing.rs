@@ -12,7 +12,8 @@ use lang_dataflow::show;
 use lang_diagram::blocks;
 use lang_diagram::project::Project;
 use lang_diagram::show::outline::{self, Line};
-use lang_text::problem::Locale;
+use lang_text::near::did_you_mean;
+use lang_text::problem::{Locale, Words};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -179,6 +180,15 @@ impl Listing {
             let before = id.strip_suffix(text);
             text.starts_with('{') && before.is_some_and(|before| before.ends_with('/'))
         })
+    }
+
+    /// The label of a data-flow program that may be meant by a text which means no block, as a sentence to append; none: the
+    /// program is a diagram, whose blocks have no labels.
+    pub(crate) fn near_label(&self, text: &str) -> Option<Words> {
+        let labels = self.callings.keys().map(String::as_str);
+        // A place that is typed ends at a space.
+        let labels = labels.filter(|label| !label.contains(char::is_whitespace));
+        (!self.callings.is_empty()).then(|| did_you_mean(text, labels))
     }
 
     /// The blocks of a line, from 1.

@@ -41,6 +41,8 @@ pub(super) enum NotUnderstood {
     Strange(String),
     /// The diagram has no such line, or no block there and after it.
     NoLine(String),
+    /// Nor has a data-flow program a block that is called so; the label that may be meant, as a sentence to append.
+    NoLabel(String, Words),
 }
 
 impl NotUnderstood {
@@ -64,6 +66,16 @@ impl NotUnderstood {
                     "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
                 ),
                 format!("'{text}' - не строка с блоком и не id блока; строки показывает list"),
+            ),
+            Self::NoLabel(text, near) => Words::new(
+                format!(
+                    "'{text}' is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id; list shows lines and labels{}",
+                    near.english
+                ),
+                format!(
+                    "'{text}' - не строка с блоком, не метка блока, не ПОДПРОГРАММА/МЕТКА и не id блока; строки и метки показывает list{}",
+                    near.russian
+                ),
             ),
         };
         words.in_locale(locale).to_owned()
@@ -226,8 +238,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "break b",
         "LINE [if EXPRESSION]",
-        "stop before a line; LINE may be the id of a block",
-        "остановка перед строкой; вместо строки можно написать id блока",
+        "stop before a line; LINE may be the id of a block, or its label in a data-flow program",
+        "остановка перед строкой; вместо строки можно написать id блока, а в потоковой программе - метку",
     ),
     row(
         "tbreak tb",
@@ -342,12 +354,7 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
     }
     Ok(match word {
         "list" | "l" if rest.is_empty() => Typed::List(None),
-        "list" | "l" => {
-            let line = rest.parse();
-            Typed::List(Some(
-                line.map_err(|_| NotUnderstood::NoLine(rest.to_owned()))?,
-            ))
-        }
+        "list" | "l" => Typed::List(Some(line_of(rest, listing)?)),
         "info" | "i" => match rest {
             "threads" | "t" => Typed::Threads,
             "variables" | "locals" | "v" => Typed::Variables,
@@ -445,12 +452,32 @@ fn number(text: &str) -> Result<u32, NotUnderstood> {
     text.parse().map_err(|_| lacks)
 }
 
-/// The block that a line or an id means. A line without a block means the next one that has one.
+/// Why nothing is meant by a text that should mean a block.
+fn no_block(text: &str, listing: &Listing) -> NotUnderstood {
+    let text: String = text.chars().take(80).collect();
+    match listing.near_label(&text) {
+        Some(near) => NotUnderstood::NoLabel(text, near),
+        None => NotUnderstood::NoLine(text),
+    }
+}
+
+/// The line that is meant by its number, or by a block.
+fn line_of(text: &str, listing: &Listing) -> Result<usize, NotUnderstood> {
+    match text.parse() {
+        Ok(line) => Ok(line),
+        Err(_) => {
+            let block = listing.id_of(text).ok_or_else(|| no_block(text, listing))?;
+            Ok(listing.line_of(block))
+        }
+    }
+}
+
+/// The block that a line, a label or an id means. A line without a block means the next one that has one.
 fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
     if text.is_empty() {
         return Err(NotUnderstood::Lacks(Lacking::Line));
     }
-    let none = || NotUnderstood::NoLine(text.chars().take(80).collect());
+    let none = || no_block(text, listing);
     match text.parse::<usize>() {
         Ok(line) => {
             let line = listing.line_with_block(line).ok_or_else(none)?;

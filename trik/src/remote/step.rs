@@ -201,7 +201,7 @@ fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
     file.map(|file| listing_of(file, at.language)).transpose()
 }
 
-/// The block of a line or an id.
+/// The block of a line, a label or an id.
 fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
     let place = place.trim();
     let none = |why: &str| Refusal {
@@ -217,7 +217,11 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
         (Ok(_), None) => Err(none("lines are those of --file FILE")),
         (Err(_), Some(listing)) => {
             let id = listing.id_of(place).map(Into::into);
-            id.ok_or_else(|| none("the diagram has no such block"))
+            id.ok_or_else(|| {
+                let near = listing.near_label(place);
+                let near = near.map_or_else(String::new, |near| near.english);
+                none(&format!("the diagram has no such block{near}"))
+            })
         }
         (Err(_), None) => Ok(place.into()),
     }

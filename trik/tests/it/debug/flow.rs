@@ -32,6 +32,28 @@ fn a_data_flow_program_is_stopped_stepped_changed_and_ends() {
 }
 
 #[test]
+fn what_means_no_block_is_told_with_all_that_may_be_given_and_the_nearest_label() {
+    let board = board();
+    let typed = "break whels\nbreak 99\nuntil gian\nlist weels\nlist wheels\nq\n";
+    let told = debug(&board, &["debug", "count.flow"], typed).good();
+    let may = "is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id; \
+        list shows lines and labels";
+    for line in [
+        format!("(trik) break whels\n'whels' {may}; did you mean 'wheels'?\n"),
+        format!("(trik) break 99\n'99' {may}\n"),
+        format!("(trik) until gian\n'gian' {may}; did you mean 'gain'?\n"),
+        format!("(trik) list weels\n'weels' {may}; did you mean 'wheels'?\n"),
+        "(trik) list wheels\n    2   numbers - Loop:".to_owned(),
+    ] {
+        assert!(told.contains(&line), "{line}: {told}");
+    }
+    let words = ["debug", "count.flow", "--language", "ru"];
+    let told = debug(&board, &words, "break whels\nq\n").good();
+    let line = "\u{43c}\u{435}\u{442}\u{43a}\u{438} \u{43f}\u{43e}\u{43a}\u{430}\u{437}\u{44b}\u{432}\u{430}\u{435}\u{442} list; \u{43c}\u{43e}\u{436}\u{435}\u{442} \u{431}\u{44b}\u{442}\u{44c}, 'wheels'?\n";
+    assert!(told.contains(line), "{told}");
+}
+
+#[test]
 fn what_a_debugger_does_not_change_is_what_it_would_be_alone() {
     let board = board();
     let alone = debug(&board, &["check", "count.flow"], "").good();
