@@ -3,6 +3,7 @@
 //! Owns the checks that look at several blocks at once; `lower` has those of one block with its edges. Each block is told
 //! of once, however many instances it has. Knows no time.
 
+mod conditions;
 mod edges;
 mod givers;
 mod rates;
@@ -81,6 +82,13 @@ impl Found {
     fn warn(&mut self, place: Place, words: Words) {
         self.add(place, Severity::Warning, words);
     }
+}
+
+/// Where a property of a node is, by its name in the save, for a problem.
+fn property_place(program: &Program, id: NodeId, name: &str) -> Place {
+    let property = program.node(id).row.property(name);
+    let shown = property.map_or(name, |property| property.shown);
+    program.property_place(id, shown, None)
 }
 
 /// Where a port of a node is, for a problem.

@@ -285,6 +285,13 @@ pub(crate) fn bad_period(time: i32) -> Words {
     )
 }
 
+pub(crate) fn negative_time(time: i32) -> Words {
+    Words::new(
+        format!("{time} ms: a time below 0 counts as 0; write 0 or more"),
+        format!("{time} мс: время меньше 0 считается нулём; напишите 0 или больше"),
+    )
+}
+
 pub(crate) fn bad_width() -> Words {
     Words::new("the width must be above 0", "ширина должна быть больше 0")
 }

@@ -3,7 +3,7 @@
 //! Owns the inference of periods. What is not known is not told.
 
 use super::words;
-use super::{Found, port_place};
+use super::{Found, port_place, property_place};
 use crate::limits;
 use crate::machine::POLL_MS;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};
@@ -65,15 +65,32 @@ pub(super) fn look(program: &Program, found: &mut Found) {
         if node.waits() {
             look_at_join(program, id, &rates, found);
         }
-        if let Op::Flow(Flow::Replace(ms) | Flow::Inhibit(ms)) = node.op {
-            let trigger = rates.get(&(id, 0)).copied().unwrap_or_default();
-            let is_fixed = !node.is_linked(3);
-            if let Some(period) = trigger.period()
-                && is_fixed
-                && i64::from(ms) < i64::from(period)
-            {
-                found.warn(program.place(id), words::short_window(ms, period));
-            }
+        look_at_time(program, id, &rates, found);
+    }
+}
+
+/// A wait or a window whose time is none, or too short. One that a token brings is not known.
+fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found) {
+    let node = program.node(id);
+    let time = node.row.port("TIME");
+    if time.is_some_and(|port| node.is_linked(port)) {
+        return;
+    }
+    if let Op::Flow(Flow::Wait(ms)) = node.op
+        && ms <= 0
+    {
+        let place = property_place(program, id, "time");
+        found.warn(place, words::no_wait(ms, STEP_MS));
+    }
+    if let Op::Flow(Flow::Replace(ms) | Flow::Inhibit(ms)) = node.op {
+        let trigger = rates.get(&(id, 0)).copied().unwrap_or_default();
+        if ms <= 0 {
+            let place = property_place(program, id, "time");
+            found.warn(place, words::no_window(ms));
+        } else if let Some(period) = trigger.period()
+            && i64::from(ms) < i64::from(period)
+        {
+            found.warn(program.place(id), words::short_window(ms, period));
         }
     }
 }

@@ -197,6 +197,16 @@ fn dead(program: &Program, graph: &Graph, found: &mut Found) {
     }
 }
 
+/// Inputs of a loop that change its numbers, as bits: FROM, TO and STEP.
+const LOOP_BOUNDS: u16 = 0b111;
+/// Where the numbers of a loop leave it.
+const LOOP_OUT: u8 = 5;
+
+/// Whether a loop is over before its first number.
+fn gives_none([first, last, step]: [i32; 3]) -> bool {
+    step > 0 && first > last || step < 0 && first < last
+}
+
 /// What is strange about one block with its edges.
 fn node(program: &Program, id: NodeId, found: &mut Found) {
     let node = program.node(id);
@@ -213,6 +223,15 @@ fn node(program: &Program, id: NodeId, found: &mut Found) {
         // Only parameters are connected: nothing starts it.
         Op::Flow(Flow::Loop { .. }) if node.linked != 0 && !node.is_linked(3) => {
             found.warn(program.place(id), words::dead());
+        }
+        // Nobody hears of the numbers, or there are none.
+        Op::Flow(Flow::Loop { .. }) if node.outs[usize::from(LOOP_OUT)].is_empty() => {
+            found.warn(port_place(program, id, LOOP_OUT), words::empty_loop());
+        }
+        Op::Flow(Flow::Loop { bounds, .. })
+            if node.linked & LOOP_BOUNDS == 0 && gives_none(*bounds) =>
+        {
+            found.warn(program.place(id), words::no_numbers(*bounds));
         }
         Op::Flow(Flow::Wait(_)) if node.linked != 0 && !node.is_linked(0) && !node.is_linked(2) => {
             found.warn(program.place(id), words::dead());

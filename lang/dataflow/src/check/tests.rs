@@ -396,3 +396,123 @@ fn many_blocks_that_give_one_variable_cost_what_they_are() {
     // Looking at each giver for each reader would be half a milliard looks in each pass.
     assert_eq!(told(&text), Vec::<String>::new());
 }
+
+#[test]
+fn times_that_are_none_are_told() {
+    for (time, words) in [("0", "0 ms"), ("-5", "-5 ms")] {
+        only(
+            &format!("W Wait and send {{time={time}}}\nS Say\nW.CF_OUT > S.CF_IN"),
+            &format!("warning: main: Wait and send 'W': 'time': {words}: it waits 10 ms"),
+        );
+        for (block, opens, property) in [
+            ("Flow replacer", "REPLACE_DATA", "replacing time"),
+            ("Flow delay", "STOP", "delay time"),
+        ] {
+            only(
+                &format!(
+                    "A Sensor\nB Sensor {{VarName=sensorA2}}\nR {block} {{time={time}}}\nM Motors\nA.OUT > R.{opens}\nB.OUT > R.DATA\nR.OUT > M.M3"
+                ),
+                &format!(
+                    "warning: main: {block} 'R': '{property}': {words}: its window is over at once"
+                ),
+            );
+        }
+    }
+    // A token brings the time.
+    let brought = "V Value generator\nT Value generator {varValue=1}\nW Wait and send {time=0}\nS Say\nV.OUT > W.TIME\nT.OUT > W.DATA\nW.OUT > S.DATA";
+    assert_eq!(told(brought), Vec::<String>::new());
+    for (property, shown) in [
+        ("dispatchTime", "dispatch time"),
+        ("preSendTime", "time before first send"),
+    ] {
+        let body = diagram(
+            "body",
+            DiagramKind::Subprogram,
+            &format!(
+                "I Input port\nF Complex filter {{{property}=-1}}\nS Say\nI.OUT > F.DATA\nF.OUT > S.DATA"
+            ),
+        );
+        let main = diagram(
+            "main",
+            DiagramKind::Main,
+            "A Sensor\nC User block of body\nD User block of body\nA.OUT > C.I0\nA.OUT > D.I0",
+        );
+        // Once for both calls.
+        let wanted = format!(
+            "warning: body: Complex filter 'F': '{shown}': -1 ms: a time below 0 counts as 0; write 0 or more"
+        );
+        assert_eq!(told_of(&project(vec![main, body])), [wanted]);
+    }
+}
+
+#[test]
+fn loops_without_a_body_or_without_a_number_are_told() {
+    only(
+        "L Loop\nS Say\nL.CF_OUT > S.CF_IN",
+        "warning: main: Loop 'L': 'OUT': nothing happens at its numbers",
+    );
+    for (bounds, counts) in [
+        ("start_border=5 | end_border=1", "from 5 to 1 by steps of 1"),
+        (
+            "start_border=1 | end_border=5 | increment=-2",
+            "from 1 to 5 by steps of -2",
+        ),
+    ] {
+        only(
+            &format!("L Loop {{{bounds}}}\nS Say\nL.OUT > S.DATA"),
+            &format!("warning: main: Loop 'L': it counts {counts}"),
+        );
+    }
+    // A token brings the last number.
+    let brought = "V Value generator\nL Loop {end_border=-1}\nS Say\nV.OUT > L.TO\nV.OUT > L.CF_IN\nL.OUT > S.DATA";
+    assert_eq!(told(brought), Vec::<String>::new());
+}
+
+#[test]
+fn conditions_that_are_always_the_same_or_compare_different_kinds_are_told() {
+    let of = |sensor: &str, condition: &str| {
+        format!(
+            "A Sensor {{VarName={sensor}}}\nI If {{condition={condition}}}\nS Say\nA.OUT > I.DATA\nI.TRUE > S.CF_IN"
+        )
+    };
+    for condition in ["true", "1 > 0", "not false", "'a' == 'b'"] {
+        only(
+            &of("sensorA1", condition),
+            "warning: main: If 'I': 'Condition': the condition is the same for every token",
+        );
+    }
+    for (sensor, condition, kinds) in [
+        (
+            "sensorA1",
+            "data == 'near'",
+            "a number with a text that is no number",
+        ),
+        (
+            "sensorA1",
+            "'far' ~= data",
+            "a text that is no number with a number",
+        ),
+        ("gyroscope", "data == 3", "a list with a number"),
+        ("gyroscope", "data ~= 'up'", "a list with a text"),
+    ] {
+        only(
+            &of(sensor, condition),
+            &format!("warning: main: If 'I': 'Condition', 1:1 the condition compares {kinds}"),
+        );
+    }
+    for good in [
+        "data == '5'",
+        "time() > 1000",
+        "sensorA2 > 5",
+        "data + 1 == 2.5",
+    ] {
+        assert_eq!(told(&of("sensorA1", good)), Vec::<String>::new(), "{good}");
+    }
+    // What opens a gate for all, and the last way of a switch.
+    for good in [
+        "A Sensor\nF Complex filter\nS Say\nA.OUT > F.DATA\nF.OUT > S.DATA",
+        "A Sensor\nW Switch {cond0=data > 5 | O0=1 | cond1=true | O1=2}\nS Say\nA.OUT > W.DATA\nW.O0 > S.DATA\nW.O1 > S.DATA",
+    ] {
+        assert_eq!(told(good), Vec::<String>::new(), "{good}");
+    }
+}

@@ -3,6 +3,7 @@
 //! Owns the inference. What is not known fits everywhere: then the program says so when it runs.
 
 use super::Found;
+use super::conditions;
 use super::givers::{Known, Variables};
 use super::words;
 use crate::blocks::Kind;
@@ -257,12 +258,18 @@ impl Inference<'_> {
             if self.tell_unassigned(&source, text, found) {
                 continue;
             }
-            if let Err(problems) = outcome {
-                for problem in problems {
-                    let at = problem.place.position;
-                    let place = self.program.property_place(text.node, text.property, at);
-                    found.error(place, problem.words);
+            match outcome {
+                Err(problems) => {
+                    for problem in problems {
+                        let at = problem.place.position;
+                        let place = self.program.property_place(text.node, text.property, at);
+                        found.error(place, problem.words);
+                    }
                 }
+                Ok(()) if text.wanted == Wanted::Bool && known == Known::All => {
+                    conditions::look(self.program, text, (&source, &self.names), found);
+                }
+                Ok(()) => {}
             }
         }
     }

@@ -11,6 +11,7 @@ pub(crate) const A_TRUTH: [&str; 2] = ["a truth", "логическое знач
 pub(crate) const A_WHOLE: [&str; 2] = ["a whole number", "целое число"];
 pub(crate) const A_NUMBER: [&str; 2] = ["a number", "число"];
 pub(crate) const A_TEXT: [&str; 2] = ["a text", "текст"];
+pub(crate) const A_WORD: [&str; 2] = ["a text that is no number", "текст, который не число"];
 pub(crate) const A_LIST: [&str; 2] = ["a list", "список"];
 
 pub(crate) fn does_not_fit(comes: [&str; 2], wanted: [&str; 2], count: Option<u8>) -> Words {
@@ -75,6 +76,26 @@ pub(crate) fn assigning_condition() -> Words {
     )
 }
 
+pub(crate) fn constant_condition() -> Words {
+    Words::new(
+        "the condition is the same for every token, because it reads nothing: compare `data` with something, or leave the block out",
+        "условие одинаково для всех значений, потому что ничего не читает: сравните с чем-нибудь `data` или уберите блок",
+    )
+}
+
+pub(crate) fn kinds_differ(one: [&str; 2], other: [&str; 2]) -> Words {
+    Words::new(
+        format!(
+            "the condition compares {} with {}: compare values of one kind",
+            one[0], other[0]
+        ),
+        format!(
+            "в условии сравниваются {} и {}: сравнивайте значения одного вида",
+            one[1], other[1]
+        ),
+    )
+}
+
 pub(crate) fn cycle(blocks: &[String], count: usize) -> Words {
     let more = if count > blocks.len() { ", ..." } else { "" };
     let names = blocks.join(", ");
@@ -127,6 +148,44 @@ pub(crate) fn encoder_silent() -> Words {
     Words::new(
         "this encoder gives nothing until it is reset: set its flag, or connect its input",
         "этот энкодер молчит, пока его не обнулят: поставьте флажок или присоедините вход",
+    )
+}
+
+pub(crate) fn empty_loop() -> Words {
+    Words::new(
+        "nothing happens at its numbers: connect OUT, or take a 'Wait and send' if it only has to wait",
+        "при его числах ничего не происходит: присоедините OUT или возьмите ожидание, если нужно только ждать",
+    )
+}
+
+pub(crate) fn no_numbers([first, last, step]: [i32; 3]) -> Words {
+    Words::new(
+        format!(
+            "it counts from {first} to {last} by steps of {step}, so there is no number for OUT: change one of the three"
+        ),
+        format!(
+            "он считает от {first} до {last} с шагом {step}, поэтому чисел для OUT нет: измените одно из трёх"
+        ),
+    )
+}
+
+pub(crate) fn no_wait(ms: i32, least: u32) -> Words {
+    Words::new(
+        format!(
+            "{ms} ms: it waits {least} ms, the shortest time there is; write how long it has to wait"
+        ),
+        format!("{ms} мс: он ждёт {least} мс, меньше не бывает; напишите, сколько ждать"),
+    )
+}
+
+pub(crate) fn no_window(ms: i32) -> Words {
+    Words::new(
+        format!(
+            "{ms} ms: its window is over at once, so the other stream always comes through; write a time longer than that between the tokens that open it"
+        ),
+        format!(
+            "{ms} мс: окно кончается сразу, поэтому другой поток проходит всегда; напишите время больше промежутка между открывающими значениями"
+        ),
     )
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Owns the reading of property texts. Knows neither edges nor instances.
 
-use super::{At, Lowering, shared};
+use super::{At, Lowering, instance_is_first, shared};
 use crate::blocks::{Content, Does, EVALUATE, SYNCHRONIZED, Shape};
 use crate::program::{Act, Camera, Flow, Formula, Op, Read, Source, Text, Words as Said};
 use crate::project::Block;
@@ -10,7 +10,7 @@ use crate::words;
 use lang_diagram::ports::{Direction, Port, Sort};
 use lang_expr::reserved::{SENSORS, SensorIndex};
 use lang_expr::{Value, Wanted};
-use lang_text::problem::Words;
+use lang_text::problem::{Place, Words};
 use std::rc::Rc;
 
 /// Names of a function's inputs in its texts.
@@ -168,10 +168,10 @@ impl<'a> Lowering<'a> {
 
     fn filter(&mut self, at: At<'a>) -> Flow {
         Flow::Filter {
-            quiet_ms: self.number(at, "preSendTime").max(0) as u32,
+            quiet_ms: self.pause(at, "preSendTime"),
             condition: self.formula_of(at, "condition", Wanted::Bool, DATA),
             count: self.number(at, "count"),
-            pause_ms: self.number(at, "dispatchTime").max(0) as u32,
+            pause_ms: self.pause(at, "dispatchTime"),
         }
     }
 
@@ -295,6 +295,16 @@ impl<'a> Lowering<'a> {
         time.max(1) as u32
     }
 
+    /// A time that may be 0; one below 0 counts as 0, which is told once for all calls.
+    fn pause(&mut self, at: At<'a>, name: &str) -> u32 {
+        let time = self.number(at, name);
+        let instance = self.chains.len().saturating_sub(1) as u32;
+        if time < 0 && instance_is_first(instance, &self.chains, &self.program) {
+            self.warn(property_place(at, name), words::negative_time(time));
+        }
+        time.max(0) as u32
+    }
+
     /// One of the words that a property may have, as the table writes it.
     fn choice(&mut self, at: At<'a>, name: &str) -> &'static str {
         let property = at.row.property(name);
@@ -377,13 +387,17 @@ impl<'a> Lowering<'a> {
 
     /// Something is wrong with a property.
     fn bad(&mut self, at: At<'a>, name: &str, words: Words) {
-        let mut place = at.place();
-        let shown = at
-            .row
-            .property(name)
-            .map_or(name, |property| property.shown);
-        place.property = Some(shown.to_owned());
-        self.error(place, words);
+        self.error(property_place(at, name), words);
+    }
+}
+
+/// Where a property is, by its name in the save.
+fn property_place(at: At<'_>, name: &str) -> Place {
+    let property = at.row.property(name);
+    let shown = property.map_or(name, |property| property.shown);
+    Place {
+        property: Some(shown.to_owned()),
+        ..at.place()
     }
 }
 
