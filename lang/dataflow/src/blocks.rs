@@ -4,7 +4,7 @@
 //! `devices`, `shell` and `drawing`, in the order of the palette. Knows neither edges nor expressions.
 //!
 //! Names, numbers, places and defaults are those of the editor's metamodel `RobotsDataFlowMetamodel`; the Russian names of
-//! blocks are ours.
+//! blocks are ours, and so is the property `keep` of a wait.
 
 mod control;
 mod devices;

@@ -499,7 +499,7 @@ impl Node {
                 | Flow::Variable { .. }
                 | Flow::Random { .. }
                 | Flow::Filter { .. }
-                | Flow::Wait(_)
+                | Flow::Wait { .. }
                 | Flow::Replace(_)
                 | Flow::Inhibit(_)
                 | Flow::Unzip => None,

@@ -11,6 +11,7 @@ mod draw;
 mod evaluate;
 mod fire;
 mod formulas;
+mod hold;
 pub mod patch;
 mod sensors;
 mod state;
@@ -53,7 +54,7 @@ pub struct Machine {
     states: Vec<State>,
     /// Tokens that wait, of nodes that wait for several.
     queues: Vec<Box<[VecDeque<Value>]>>,
-    /// What those weigh.
+    /// What those weigh, and those that waits keep.
     queued: u32,
     /// Tokens on their way.
     deliveries: VecDeque<(Target, Value)>,
@@ -267,6 +268,9 @@ impl Machine {
         self.stops.forget();
         self.deliveries.clear();
         self.queues = self.program.nodes.iter().map(empty_queues).collect();
+        for state in &mut self.states {
+            state.memory.keep_of(|_| false);
+        }
         self.queued = 0;
         self.timers.clear();
         self.subscribed.clear();
@@ -331,7 +335,11 @@ impl Machine {
     pub fn waiting_at(&self, target: Target) -> usize {
         let queues = self.queues.get(target.node as usize);
         let queue = queues.and_then(|queues| queues.get(usize::from(target.port)));
-        queue.map_or(0, VecDeque::len)
+        let kept = self.states.get(target.node as usize).map_or(0, |state| {
+            let kept = state.memory.kept();
+            kept.filter(|(port, _)| *port == target.port).count()
+        });
+        queue.map_or(0, VecDeque::len) + kept
     }
 
     /// Ports that have lost tokens, and how many.

@@ -184,7 +184,12 @@ pub enum Flow {
         pause_ms: u32,
     },
     /// Holds a token.
-    Wait(i32),
+    Wait {
+        /// For how long, in milliseconds.
+        ms: i32,
+        /// Whether what comes meanwhile waits its turn.
+        keeps: bool,
+    },
     /// A stream that another one replaces for a time.
     Replace(i32),
     /// A stream that another one stops for a time.

@@ -247,8 +247,12 @@ pub(super) const ROWS: &[Row] = &[
             output("OUT", Any, 100, 60),
             input("TIME", Int, 50, 113),
         ],
-        properties: &[property("time", "time", Number, "300")],
-        text: "Holds a token for the time and lets it go then; what comes meanwhile is dropped.",
+        // `keep` is ours: an author's note in the original wishes for it.
+        properties: &[
+            property("time", "time", Number, "300"),
+            property("keep", "keep", Flag, "false"),
+        ],
+        text: "Holds a token for the time and lets it go then; what comes meanwhile is dropped, or waits its turn with keep.",
         does: Does::Wait,
     },
 ];

@@ -58,6 +58,9 @@ impl Rate {
 
 type Rates = HashMap<(NodeId, u8), Rate>;
 
+/// The input of a wait whose tokens go on.
+const WAIT_DATA: u8 = 2;
+
 pub(super) fn look(program: &Program, found: &mut Found) {
     let rates = infer(program);
     for id in 0..program.nodes.len() as NodeId {
@@ -76,11 +79,19 @@ fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found)
     if time.is_some_and(|port| node.is_linked(port)) {
         return;
     }
-    if let Op::Flow(Flow::Wait(ms)) = node.op
-        && ms <= 0
-    {
-        let place = property_place(program, id, "time");
-        found.warn(place, words::no_wait(ms, STEP_MS));
+    if let Op::Flow(Flow::Wait { ms, keeps }) = node.op {
+        let takes = in_steps(u32::try_from(ms).unwrap_or(0));
+        let came = rates.get(&(id, WAIT_DATA)).copied().unwrap_or_default();
+        if ms <= 0 {
+            let place = property_place(program, id, "time");
+            found.warn(place, words::no_wait(ms, STEP_MS));
+        } else if let Rate::Every(period) = came
+            && keeps
+            && period < takes
+        {
+            let place = port_place(program, id, WAIT_DATA);
+            found.warn(place, words::wait_falls_behind(period, takes));
+        }
     }
     if let Op::Flow(Flow::Replace(ms) | Flow::Inhibit(ms)) = node.op {
         let trigger = rates.get(&(id, 0)).copied().unwrap_or_default();
@@ -183,7 +194,7 @@ fn give(program: &Program, id: NodeId, ins: &Rates, outs: &mut Rates) {
             Flow::Random { every_ms, .. } => {
                 every_ms.map_or(all, |every| Rate::Every(in_steps(every)))
             }
-            Flow::Wait(_) => all.thinned(),
+            Flow::Wait { .. } => all.thinned(),
             Flow::Function { .. } | Flow::Zip if waits => slowest.unwrap_or_default(),
             Flow::Function { .. } | Flow::Constant(_) | Flow::Variable { .. } => all,
             Flow::Unzip | Flow::Zip => all,

@@ -97,7 +97,7 @@ fn walk(ways: &[Vec<NodeId>], from: impl IntoIterator<Item = NodeId>) -> HashSet
 fn delays(op: &Op) -> bool {
     match op {
         Op::Flow(flow) => match flow {
-            Flow::Wait(_) | Flow::Loop { .. } => true,
+            Flow::Wait { .. } | Flow::Loop { .. } => true,
             Flow::Random { every_ms, .. } => every_ms.is_some(),
             Flow::Stop
             | Flow::Function { .. }
@@ -233,7 +233,9 @@ fn node(program: &Program, id: NodeId, found: &mut Found) {
         {
             found.warn(program.place(id), words::no_numbers(*bounds));
         }
-        Op::Flow(Flow::Wait(_)) if node.linked != 0 && !node.is_linked(0) && !node.is_linked(2) => {
+        Op::Flow(Flow::Wait { .. })
+            if node.linked != 0 && !node.is_linked(0) && !node.is_linked(2) =>
+        {
             found.warn(program.place(id), words::dead());
         }
         Op::Flow(Flow::Function { .. }) if node.data != 0 && node.is_linked(0) => {

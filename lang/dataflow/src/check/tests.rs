@@ -446,6 +446,20 @@ fn times_that_are_none_are_told() {
 }
 
 #[test]
+fn a_wait_that_keeps_more_than_it_lets_go_is_told() {
+    let of = |properties: &str| {
+        format!("A Sensor\nW Wait and send {{{properties}}}\nS Say\nA.OUT > W.DATA\nW.OUT > S.DATA")
+    };
+    only(
+        &of("time=100 | keep=true"),
+        "warning: main: Wait and send 'W': 'DATA': a token comes every 20 ms and each is held for 100 ms",
+    );
+    for good in ["time=100", "time=20 | keep=true", "time=15 | keep=1"] {
+        assert_eq!(told(&of(good)), Vec::<String>::new(), "{good}");
+    }
+}
+
+#[test]
 fn loops_without_a_body_or_without_a_number_are_told() {
     only(
         "L Loop\nS Say\nL.CF_OUT > S.CF_IN",

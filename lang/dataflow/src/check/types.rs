@@ -460,7 +460,7 @@ impl Inference<'_> {
                 gives.push((3, of));
             }
             Flow::Filter { .. } => gives.push((3, ins[4])),
-            Flow::Wait(_) => gives.push((3, ins[2])),
+            Flow::Wait { .. } => gives.push((3, ins[2])),
             Flow::Replace(_) => gives.push((2, ins[0].join(ins[1]))),
             Flow::Inhibit(_) => gives.push((2, ins[1])),
             Flow::Unzip => gives.extend([(1, Of::Any), (2, Of::Any)]),

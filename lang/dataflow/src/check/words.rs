@@ -178,6 +178,17 @@ pub(crate) fn no_wait(ms: i32, least: u32) -> Words {
     )
 }
 
+pub(crate) fn wait_falls_behind(period: u32, takes: u32) -> Words {
+    Words::new(
+        format!(
+            "a token comes every {period} ms and each is held for {takes} ms, so they queue up and grow old: make the time shorter, or switch 'keep' off"
+        ),
+        format!(
+            "значение приходит каждые {period} мс, а ждёт каждое {takes} мс, поэтому они копятся и устаревают: уменьшите время или выключите 'keep'"
+        ),
+    )
+}
+
 pub(crate) fn no_window(ms: i32) -> Words {
     Words::new(
         format!(

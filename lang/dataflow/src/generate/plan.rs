@@ -120,7 +120,8 @@ impl<'a> Plan<'a> {
             Op::Flow(flow) => match flow {
                 Flow::Random { .. } => self.refuse_block(id, words::no_chance()),
                 Flow::Constant(value) => self.look_at_constant(id, value),
-                Flow::Loop { .. } | Flow::Wait(_) => self.timers.push(id),
+                Flow::Wait { keeps: true, .. } => self.refuse_block(id, words::no_keeping()),
+                Flow::Loop { .. } | Flow::Wait { keeps: false, .. } => self.timers.push(id),
                 Flow::Stop
                 | Flow::Function { .. }
                 | Flow::If(_)

@@ -348,7 +348,7 @@ impl Writer<'_, '_> {
                 count,
                 pause_ms,
             } => self.filter(to, *quiet_ms, *condition, *count, *pause_ms),
-            Flow::Wait(ms) => self.hold(to, *ms),
+            Flow::Wait { ms, .. } => self.hold(to, *ms),
             Flow::Replace(ms) => self.window(to, *ms, true),
             Flow::Inhibit(ms) => self.window(to, *ms, false),
             Flow::Unzip => {

@@ -454,6 +454,27 @@ fn what_has_no_place_in_a_converter_is_told_with_its_block() {
     assert_eq!(told(Target::Lua), told(Target::C));
 }
 
+#[test]
+fn a_wait_that_keeps_has_no_place_in_a_converter() {
+    let program = good(&main_only(
+        "A Sensor {VarName=sensorA1}
+        W Wait and send {keep=true}
+        M Motors
+        A.OUT > W.DATA
+        W.OUT > M.M3",
+    ));
+    for target in Target::ALL {
+        let problems = generate(&program, target).expect_err("refused");
+        let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                "main: Wait and send 'W': a wait that keeps what comes meanwhile has no place in a converter: switch 'keep' off"
+            ]
+        );
+    }
+}
+
 /// What both languages say of a program that fails.
 fn faults(text: &str) -> Vec<String> {
     let case = case("fails", &main_only(text));

@@ -20,6 +20,13 @@ pub(super) fn no_chance() -> Words {
     )
 }
 
+pub(super) fn no_keeping() -> Words {
+    Words::new(
+        "a wait that keeps what comes meanwhile has no place in a converter: switch 'keep' off",
+        "ожиданию, которое хранит пришедшее, не место в преобразователе: выключите 'keep'",
+    )
+}
+
 pub(super) fn no_texts() -> Words {
     Words::new(
         "texts have no place in a converter, which knows numbers, truths and lists of numbers",

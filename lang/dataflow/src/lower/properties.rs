@@ -47,7 +47,7 @@ impl<'a> Lowering<'a> {
             Does::Variable => self.variable(at).into(),
             Does::Random => self.random(at).into(),
             Does::Filter => self.filter(at).into(),
-            Does::Wait => Flow::Wait(self.number(at, "time")).into(),
+            Does::Wait => self.wait(at).into(),
             Does::Replace => Flow::Replace(self.number(at, "time")).into(),
             Does::Inhibit => Flow::Inhibit(self.number(at, "time")).into(),
             Does::Zip => Flow::Zip.into(),
@@ -172,6 +172,13 @@ impl<'a> Lowering<'a> {
             condition: self.formula_of(at, "condition", Wanted::Bool, DATA),
             count: self.number(at, "count"),
             pause_ms: self.pause(at, "dispatchTime"),
+        }
+    }
+
+    fn wait(&mut self, at: At<'a>) -> Flow {
+        Flow::Wait {
+            ms: self.number(at, "time"),
+            keeps: at.block.flag("keep"),
         }
     }
 

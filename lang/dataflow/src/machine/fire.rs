@@ -2,7 +2,7 @@
 //!
 //! Owns one reaction at a time; devices are in `act`. Knows no order of tokens. Numbers of ports are those of the rows.
 
-use super::state::{Held, Memory};
+use super::state::Memory;
 use super::values::{self, is_unit};
 use super::words;
 use super::{Env, Halt, Machine};
@@ -66,7 +66,7 @@ impl Machine {
                 condition,
                 ..
             } => self.filter(to, value, *quiet_ms, *condition, env),
-            Flow::Wait(_) => self.hold(to, value, env),
+            Flow::Wait { keeps, .. } => self.hold(to, value, *keeps, env),
             Flow::Replace(_) | Flow::Inhibit(_) => self.window(to, value, env),
             Flow::Unzip => self.unzip(to, &value, env),
         }
@@ -328,14 +328,7 @@ impl Machine {
                 }
                 Ok(())
             }
-            Flow::Wait(_) => {
-                if let Memory::Hold { held, .. } = &mut self.states[id as usize].memory
-                    && let Some(Held::Token(token)) = held.take()
-                {
-                    self.send(id, 3, token, env)?;
-                }
-                self.done(id, env)
-            }
+            Flow::Wait { .. } => self.end_hold(id, env),
             Flow::Stop
             | Flow::Function { .. }
             | Flow::If(_)
@@ -483,35 +476,6 @@ impl Machine {
                 return self.send(to.node, 3, value, env);
             }
         }
-        Ok(())
-    }
-
-    fn hold(&mut self, to: Target, value: Value, env: &mut Env<'_>) -> Result<(), Halt> {
-        // CF_IN, CF_OUT, DATA, OUT, TIME.
-        const TIME: u8 = 4;
-        let memory = &self.states[to.node as usize].memory;
-        let is_busy = matches!(memory, Memory::Hold { held: Some(_), .. });
-        if is_busy {
-            self.lose(to, words::busy(), env);
-            return Ok(());
-        }
-        let time = match to.port {
-            TIME => Some(self.whole(to, &value, env)?),
-            _ => None,
-        };
-        let Memory::Hold { ms, held } = &mut self.states[to.node as usize].memory else {
-            return Ok(());
-        };
-        if let Some(time) = time {
-            *ms = time;
-            return Ok(());
-        }
-        let due = self.now.saturating_add(Self::steps(*ms));
-        *held = Some(match to.port {
-            CONTROL => Held::Start,
-            _ => Held::Token(value),
-        });
-        self.set_timer(to.node, due);
         Ok(())
     }
 

@@ -198,6 +198,8 @@ impl Machine {
             let (was, state) = (old.program.node(before), &old.states[before as usize]);
             let mut memory = state.memory.clone();
             memory.follow(&State::new(was).memory, &State::new(node).memory);
+            memory.keep_of(|port| node.is_linked(port));
+            self.queued += memory.kept().map(|(_, value)| value.cells()).sum::<u32>();
             self.states[id as usize].memory = memory;
             // One that repeats no more has nothing to wait for.
             if !matches!(&node.op, Op::Flow(Flow::Random { every_ms: None, .. })) {
@@ -245,7 +247,9 @@ impl Machine {
     }
 
     fn queued_tokens(&self) -> usize {
-        self.queues.iter().flatten().map(VecDeque::len).sum()
+        let kept = self.states.iter().map(|state| state.memory.kept().count());
+        let queued = self.queues.iter().flatten().map(VecDeque::len);
+        kept.chain(queued).sum()
     }
 
     /// Tokens that wait at a port, as many of the newest as there are places for.

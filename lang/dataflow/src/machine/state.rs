@@ -4,6 +4,7 @@
 
 use crate::program::{Act, Flow, Node, Op, Source, Words};
 use lang_expr::Value;
+use std::collections::VecDeque;
 use std::rc::Rc;
 
 /// What one block remembers.
@@ -35,8 +36,15 @@ pub(super) enum Memory {
     None,
     /// A loop: first, last, step, and the number that comes next while it runs.
     Count { bounds: [i32; 3], next: Option<i32> },
-    /// The time of a wait, and what it holds.
-    Hold { ms: i32, held: Option<Held> },
+    /// A wait.
+    Hold {
+        /// Its time.
+        ms: i32,
+        /// What it holds.
+        held: Option<Held>,
+        /// What waits its turn, the oldest first, each with its port.
+        kept: VecDeque<(u8, Value)>,
+    },
     /// The time of a window, and when it was opened last.
     Window { ms: i32, since: Option<u32> },
     /// A gate.
@@ -112,9 +120,10 @@ impl Memory {
                 count: *count,
                 last: None,
             },
-            Flow::Wait(ms) => Self::Hold {
+            Flow::Wait { ms, .. } => Self::Hold {
                 ms: *ms,
                 held: None,
+                kept: VecDeque::new(),
             },
             Flow::Replace(ms) | Flow::Inhibit(ms) => Self::Window {
                 ms: *ms,
@@ -158,6 +167,23 @@ impl Memory {
             | Act::Paint { .. }
             | Act::Clear
             | Act::Draw { .. } => Self::None,
+        }
+    }
+
+    /// The tokens that wait their turn at a wait, each with its port.
+    pub fn kept(&self) -> impl Iterator<Item = &(u8, Value)> {
+        let kept = if let Self::Hold { kept, .. } = self {
+            Some(kept)
+        } else {
+            None
+        };
+        kept.into_iter().flatten()
+    }
+
+    /// Drops those of them whose port is not open any more.
+    pub fn keep_of(&mut self, is_open: impl Fn(u8) -> bool) {
+        if let Self::Hold { kept, .. } = self {
+            kept.retain(|(port, _)| is_open(*port));
         }
     }
 

@@ -138,8 +138,19 @@ pub(crate) fn queue_overflows(places: u16) -> Words {
 
 pub(crate) fn busy() -> Words {
     Words::new(
-        "tokens that come while it waits are lost",
-        "значения, пришедшие во время ожидания, пропадают",
+        "tokens that come while it waits are lost: switch 'keep' on if they have to wait their turn",
+        "значения, пришедшие во время ожидания, пропадают: включите 'keep', если они должны ждать своей очереди",
+    )
+}
+
+pub(crate) fn kept_overflow(places: usize) -> Words {
+    Words::new(
+        format!(
+            "there is room for at most {places} tokens that wait their turn, so the oldest ones are lost: they come faster than they are let go"
+        ),
+        format!(
+            "мест для ждущих своей очереди не больше {places}, поэтому самые старые значения пропадают: они приходят быстрее, чем уходят"
+        ),
     )
 }
 

@@ -18,7 +18,7 @@ diagram \"Wall follower\"
   C: If(condition = `data < 25`) named \"Near?\"
   call: \"User block\" of \"Avoid\"
   wait1: \"Wait and send\"(time = 100) named \"\"
-  wait2: \"Wait and send\"(time = \"\", \"keep\" = true) named \"\"
+  wait2: \"Wait and send\"(time = \"\", \"later\" = true) named \"\"
   M: Motors(synch = true, M3Power = 0) named Motors
   X: unknown \"FutureBlock\" named X
   A.OUT -> F.I0

@@ -173,7 +173,7 @@ meta \"a key\" = \"a \\\"value\\\"\\n\\u{202e}\"
 meta version = 1.0
 
 diagram first
-  wait1: \"Wait and send\"(time = 5, \"keep\" = true) named \"Two words\" at 0.1, -1e300
+  wait1: \"Wait and send\"(time = 5, \"later\" = true) named \"Two words\" at 0.1, -1e300
   block1: unknown \"Future block\"(x = `a \"b\"`) of id \"gone\" named \"\" at 0, 0 id \"qrm:/a/b/c/d\" logical \"qrm:/a/b/c/e\"
   loop1: Loop at 1, 2 element \"Old\"
   wait1.OUT -> block1.-1 fifo 16 via 1, 2; 3.5, -4
@@ -202,7 +202,7 @@ fn all_that_a_line_can_say_stays() {
     assert_eq!(project.meta["a key"], "a \"value\"\n\u{202e}");
     let first = &project.diagrams[0];
     assert_eq!(first.blocks[0].name, "Two words");
-    assert_eq!(first.blocks[0].properties["keep"], "true");
+    assert_eq!(first.blocks[0].properties["later"], "true");
     assert_eq!(first.blocks[0].position, (0.1, -1e300));
     let unknown = &first.blocks[1];
     assert!(unknown.row.is_none());

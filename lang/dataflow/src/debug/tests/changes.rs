@@ -61,6 +61,34 @@ fn windows_counts_and_timers_outlive_a_change() {
 }
 
 #[test]
+fn tokens_that_a_wait_keeps_outlive_a_change_and_are_counted() {
+    let keeps = "L Loop {start_border=1 | end_border=4 | time=10}\nW Wait and send {time=100 | keep=true}\nM Motors\nL.OUT > W.DATA\nW.OUT > M.M3";
+    let (mut desk, mut robot) = (desk(keeps), Robot::default());
+    runs(&mut desk, &mut robot, 0, 50);
+    let waiting = |desk: &mut Desk| {
+        let state = told(desk, "look");
+        let (_, list) = state.split_once("\"waiting\":").expect("a list");
+        list.to_owned()
+    };
+    let three = "\"caption\":\"W\",\"port\":\"DATA\",\"count\":3,\"lost\":0";
+    let before = waiting(&mut desk);
+    assert!(before.contains(three), "{before}");
+    let other = keeps.replace("time=100", "time=20");
+    let patched = desk.patch(&version(&other), &mut robot).expect("a change");
+    assert_eq!(patched.to_string(), "3 blocks kept, 0 new, 0 gone");
+    assert_eq!(waiting(&mut desk), before);
+    runs(&mut desk, &mut robot, 60, 130);
+    // The one that was held ends when it would have, and the next ones after the new time.
+    assert_eq!(last(&robot), "power M3 2");
+    let gone = "L Loop {start_border=1 | end_border=4 | time=10}\nM Motors\nL.OUT > M.M4";
+    let patched = desk.patch(&version(gone), &mut robot).expect("a change");
+    assert_eq!(
+        patched.to_string(),
+        "2 blocks kept, 0 new, 1 gone, 1 waiting tokens lost"
+    );
+}
+
+#[test]
 fn a_version_that_is_wrong_changes_nothing() {
     let (mut desk, mut robot) = (
         desk(SLOW),

@@ -161,7 +161,7 @@ impl Writer<'_, '_> {
         };
         match flow {
             Flow::Loop { bounds, time_ms } => self.count_on(id, *bounds, *time_ms),
-            Flow::Wait(_) => {
+            Flow::Wait { .. } => {
                 let holds = self.number(id, "holds", 0);
                 let held = self.value(id, "held");
                 let has_token = self.say(Word::EqualNumbers, &[&holds, "2"]);

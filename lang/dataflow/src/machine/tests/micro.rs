@@ -40,6 +40,30 @@ fn a_wait_holds_one_token_and_drops_what_comes_meanwhile() {
 }
 
 #[test]
+fn a_wait_that_keeps_lets_each_token_go_in_its_turn() {
+    let text = format!(
+        "{FEED}\nW Wait and send {{time=30 | keep=true}}\nS Say\nX Say\nG.TRUE > W.DATA\nW.OUT > S.DATA\nW.CF_OUT > X.CF_IN"
+    );
+    let feed = [(20, 1), (40, 2), (60, 0), (100, 5), (120, 6), (140, 0)];
+    let mut wanted = Vec::new();
+    for (at, value) in [(50, 1), (80, 2), (130, 5), (160, 6)] {
+        wanted.extend([format!("{at}: W {value}"), format!("{at}: W.CF_OUT")]);
+    }
+    assert_eq!(only(&fed(&text, 200, &feed), "W"), wanted);
+    // A time that comes while it waits counts from its turn on.
+    let (lines, status) = simply(
+        "A Value generator {varValue=1}\nT Value generator {varValue=50}\nB Value generator {varValue=2}\nW Wait and send {time=20 | keep=true}\nS Say\nA.OUT > W.DATA\nT.OUT > W.TIME\nB.OUT > W.DATA\nW.OUT > S.DATA",
+        200,
+    );
+    assert_eq!(only(&lines, "W"), ["20: W 1", "70: W 2"]);
+    let ended = Status::Ended {
+        at: 70,
+        with_errors: false,
+    };
+    assert_eq!(status, ended);
+}
+
+#[test]
 fn an_inhibitor_stops_for_its_time() {
     let text = "
         A Sensor {VarName=sensorA1}

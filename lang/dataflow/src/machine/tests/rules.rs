@@ -415,6 +415,36 @@ fn what_waits_for_ever_is_bounded_by_its_weight() {
 }
 
 #[test]
+fn what_a_wait_keeps_is_bounded_and_is_gone_at_the_end() {
+    let at = Target { node: 1, port: 2 };
+    for (letter, most) in [
+        ("x".repeat(60_000), limits::QUEUED_CELLS_MAX as usize / 3750),
+        ("x".to_owned(), limits::QUEUE_MAX),
+    ] {
+        let main = diagram(
+            "main",
+            DiagramKind::Main,
+            "R Message receiver\nW Wait and send {time=9000000 | keep=true}\nS Say\nR.OUT > W.DATA\nW.OUT > S.CF_IN",
+        );
+        let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+        for now in (0..200).step_by(10) {
+            robot
+                .mail
+                .extend((0..100).map(|_| (Some(1), letter.clone())));
+            machine.step(now, &mut robot, &mut Deaf);
+        }
+        let kept = machine.waiting_at(at);
+        assert!(kept > most / 2 && kept <= most, "{kept} of {most}");
+        assert!(machine.queued <= limits::QUEUED_CELLS_MAX);
+        let lost: Vec<Target> = machine.dropped().map(|(at, _)| at).collect();
+        assert_eq!(lost, [at]);
+        assert_eq!(machine.status(), Status::Running);
+        machine.stop(&mut robot, &mut Deaf);
+        assert_eq!((machine.waiting_at(at), machine.queued), (0, 0));
+    }
+}
+
+#[test]
 fn too_many_names_are_told_before_anything_moves() {
     let mut text = String::new();
     for at in 0..5000 {
