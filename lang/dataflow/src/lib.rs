@@ -20,6 +20,7 @@ pub mod program;
 pub mod project;
 pub mod read;
 pub mod save;
+mod sensors;
 pub mod show;
 pub mod text;
 mod words;

@@ -32,7 +32,7 @@ use formulas::Formulas;
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
 use lang_diagram::ports::{Port, Sort};
-use lang_expr::{Compat, Value};
+use lang_expr::Value;
 use lang_text::problem::{Place, Problem, Words};
 use sensors::Readings;
 use state::State;
@@ -551,6 +551,3 @@ impl Machine {
 fn empty_queues(node: &Node) -> Box<[VecDeque<Value>]> {
     node.queues.iter().map(|_| VecDeque::new()).collect()
 }
-
-/// How exactly the oddities of expressions are kept: not at all, because no program of this language was ever saved.
-const COMPAT: Compat = Compat::Fixed;

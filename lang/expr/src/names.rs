@@ -133,6 +133,12 @@ impl Names {
         }
     }
 
+    /// Makes a name that nobody has said yet the variable of one more sensor, which gives whole numbers; its number is what
+    /// [`super::Outside`] is asked for.
+    pub fn add_sensor(&mut self, name: &str, sensor: SensorIndex) {
+        self.reserve(name, Kind::Sensor(sensor), Type::Int);
+    }
+
     /// The names of a kit for the generators of static languages: an assignment that would widen a variable is told as
     /// a warning and leaves the variable's type alone.
     pub fn with_static_types(kit: Kit, compat: Compat) -> Self {

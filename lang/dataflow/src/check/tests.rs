@@ -257,6 +257,7 @@ fn streams_of_different_periods_are_told() {
 fn lists_and_what_functions_give_are_known_along_the_way() {
     for good in [
         "G Sensor {VarName=gyroscope}\nF Text programming {IO0=I0[0] * 2}\nM Motors\nG.OUT > F.I0\nF.O0 > M.M3",
+        "R Sensor {VarName=colorSensorR}\nF Text programming {IO0=I0 + colorSensorG % 2}\nM Motors\nR.OUT > F.I0\nF.O0 > M.M3",
         "G Gamepad\nI If {condition=data[0] > 1}\nS Say\nG.PAD > I.DATA\nI.TRUE > S.CF_IN",
         "R Read file\nM Motors\nR.OUT > M.M3",
         "A Sensor\nF Text programming {IO0=I0 / 2}\nG Text programming {IO0=I0 + 1}\nM Motors\nA.OUT > F.I0\nF.O0 > G.I0\nG.O0 > M.M3",
@@ -276,10 +277,14 @@ fn lists_and_what_functions_give_are_known_along_the_way() {
         "L Loop {increment=0}\nS Say\nL.OUT > S.DATA",
         "error: main: Loop 'L': 'increment_step': the step is 0",
     );
-    only(
-        "V Variable {variable=sensorA1}",
-        "error: main: Variable 'V': 'variable': 'sensorA1' is not a name of a variable",
-    );
+    for sensor in ["sensorA1", "colorSensorR"] {
+        only(
+            &format!("V Variable {{variable={sensor}}}"),
+            &format!(
+                "error: main: Variable 'V': 'variable': '{sensor}' is not a name of a variable"
+            ),
+        );
+    }
 }
 
 #[test]

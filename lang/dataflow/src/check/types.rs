@@ -10,11 +10,12 @@ use crate::blocks::Kind;
 use crate::limits;
 use crate::lower::DATA;
 use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target, Text};
+use crate::sensors;
 use lang_diagram::ports::Sort;
 use lang_expr::names::{is_own, own_name};
-use lang_expr::reserved::{SENSORS, Shape};
+use lang_expr::reserved::Shape;
 use lang_expr::tree::Node as Part;
-use lang_expr::{Compat, Names, Source, Type, Value, Wanted};
+use lang_expr::{Names, Source, Type, Value, Wanted};
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -188,7 +189,7 @@ pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
             outs: blank(),
             ins: blank(),
         },
-        names: Names::new(program.kit, Compat::Fixed),
+        names: sensors::names_of(program.kit),
         texts: program.formulas.iter().map(|_| Of::Any).collect(),
         variables: Variables::of(program),
     };
@@ -391,7 +392,7 @@ impl Inference<'_> {
             Op::Flow(flow) => self.flow(id, flow, &ins),
             Op::Source(source) => match source {
                 Gives::Sensor(sensor) => {
-                    let of = match SENSORS.get(usize::from(*sensor)).map(|sensor| sensor.shape) {
+                    let of = match sensors::shape(*sensor) {
                         Some(Shape::Number) => Of::Whole,
                         Some(Shape::Numbers(count)) => {
                             Of::Wholes(u16::try_from(count).unwrap_or(0))

@@ -73,7 +73,7 @@ fn written(
     let program = plan.program;
     let text = &program.formulas[formula as usize];
     let mut writer = Writer {
-        names: Names::new(program.kit, Compat::Fixed),
+        names: crate::sensors::names_of(program.kit),
         source: Source::new(&text.text, text.wanted),
         plan,
         text,

@@ -6,6 +6,7 @@ use super::target::Target;
 use super::words;
 use crate::limits;
 use crate::program::{Act, Flow, Node, NodeId, Op, Program, Source, Target as To};
+use crate::sensors;
 use lang_diagram::generate::Language;
 use lang_diagram::generate::names::Names;
 use lang_diagram::ports::{Port, Sort};
@@ -392,12 +393,10 @@ pub(super) fn shows(port: Port) -> Option<SensorIndex> {
 
 /// The name of a sensor variable.
 pub(super) fn sensor_name(sensor: SensorIndex) -> &'static str {
-    SENSORS
-        .get(usize::from(sensor))
-        .map_or("", |sensor| sensor.name)
+    sensors::name(sensor)
 }
 
 /// What a sensor variable holds.
 pub(super) fn shape(sensor: SensorIndex) -> Option<Shape> {
-    SENSORS.get(usize::from(sensor)).map(|sensor| sensor.shape)
+    sensors::shape(sensor)
 }

@@ -455,6 +455,23 @@ fn what_has_no_place_in_a_converter_is_told_with_its_block() {
 }
 
 #[test]
+fn each_colour_of_the_camera_is_an_input_of_a_converter() {
+    let program = good(&main_only(
+        "R Sensor {VarName=colorSensorR}
+        F Text programming {IO0=I0 - colorSensorB}
+        M Motors
+        R.OUT > F.I0
+        F.O0 > M.M3",
+    ));
+    for target in Target::ALL {
+        let text = generate(&program, target).expect("a converter");
+        for name in ["colorSensorR", "colorSensorB"] {
+            assert!(text.contains(name), "{name}: {text}");
+        }
+    }
+}
+
+#[test]
 fn a_wait_that_keeps_has_no_place_in_a_converter() {
     let program = good(&main_only(
         "A Sensor {VarName=sensorA1}

@@ -6,9 +6,9 @@ use super::{At, Lowering, instance_is_first, shared};
 use crate::blocks::{Content, Does, EVALUATE, SYNCHRONIZED, Shape};
 use crate::program::{Act, Camera, Flow, Formula, Op, Read, Source, Text, Words as Said};
 use crate::project::Block;
+use crate::sensors;
 use crate::words;
 use lang_diagram::ports::{Direction, Port, Sort};
-use lang_expr::reserved::{SENSORS, SensorIndex};
 use lang_expr::{Value, Wanted};
 use lang_text::problem::{Place, Words};
 use std::rc::Rc;
@@ -144,7 +144,7 @@ impl<'a> Lowering<'a> {
             }
         };
         // What the language of expressions has already is no variable.
-        let known = lang_expr::Names::new(self.program.kit, lang_expr::Compat::Fixed);
+        let known = sensors::names_of(self.program.kit);
         let is_variable = |name: &str| is_name(name) && known.find(name).is_none();
         match names.iter().find(|name| !is_variable(name)) {
             Some(bad) => self.bad(at, "variable", words::no_variable(bad)),
@@ -348,11 +348,10 @@ impl<'a> Lowering<'a> {
 
     fn sensor(&mut self, at: At<'a>) -> Op {
         let name = at.block.text("VarName").trim();
-        match SENSORS.iter().position(|sensor| sensor.name == name) {
-            Some(index) => Source::Sensor(index as SensorIndex).into(),
+        match sensors::find(name) {
+            Some(sensor) => Source::Sensor(sensor).into(),
             None => {
-                let names = SENSORS.iter().map(|sensor| sensor.name);
-                self.bad(at, "VarName", words::no_sensor(name, names));
+                self.bad(at, "VarName", words::no_sensor(name, sensors::names()));
                 Source::Sensor(0).into()
             }
         }

@@ -6,7 +6,7 @@ use super::formulas::Reason;
 use super::sensors::Robot;
 use super::{Env, Halt, Machine, values, words};
 use crate::program::{Formula, Target};
-use lang_expr::reserved::SENSORS;
+use crate::sensors;
 use lang_expr::{Value, Wanted};
 use lang_text::problem::{Problem, Words};
 use std::rc::Rc;
@@ -56,12 +56,7 @@ impl Machine {
         env: &Env<'_>,
     ) -> Result<T, Halt> {
         let (words, at) = match (missing, value) {
-            (Some(sensor), _) => {
-                let name = SENSORS
-                    .get(usize::from(sensor))
-                    .map_or("", |sensor| sensor.name);
-                (words::sensor_missing(name), None)
-            }
+            (Some(sensor), _) => (words::sensor_missing(sensors::name(sensor)), None),
             (None, Ok(value)) => return Ok(value),
             (None, Err(Reason::Unbound(name))) => (words::unbound(name), None),
             (None, Err(Reason::Unit(name))) => (words::unit_read(name), None),
@@ -91,10 +86,8 @@ impl Machine {
         };
         let value = self.formulas.evaluate_text(text, Wanted::Text, &mut robot);
         if let Some(sensor) = robot.missing {
-            let name = SENSORS
-                .get(usize::from(sensor))
-                .map_or("", |sensor| sensor.name);
-            return Err(self.fault_at_port(to, words::sensor_missing(name), env));
+            let words = words::sensor_missing(sensors::name(sensor));
+            return Err(self.fault_at_port(to, words, env));
         }
         match value {
             Ok(Some(value)) => self.at_port(to, values::text(&value), env),

@@ -3,11 +3,11 @@
 //! Owns the border to the language of expressions. A name that is a block's own has the type of the value that it got
 //! last, so tokens of a port may change their type; a variable of the project has one type.
 
-use super::COMPAT;
 use super::state::State;
 use super::words;
 use crate::lower::DATA;
 use crate::program::{Formula, NodeId, Program, Text};
+use crate::sensors;
 use lang_expr::names::{is_own, own_name};
 use lang_expr::tree::Node as Part;
 use lang_expr::{Kind, Names, Outside, Slot, Source, Store, Type, Value, Wanted};
@@ -45,7 +45,7 @@ pub(super) enum Reason {
 
 impl Formulas {
     pub fn new(program: &Program) -> Self {
-        let names = Names::new(program.kit, COMPAT).strict();
+        let names = sensors::names_of(program.kit).strict();
         Self::with(program, names, Store::default())
     }
 

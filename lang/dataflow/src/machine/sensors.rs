@@ -8,9 +8,10 @@ use super::words;
 use super::{Env, Halt, Machine};
 use crate::limits;
 use crate::program::{Camera, NodeId, Op, Read, Source};
+use crate::sensors;
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::ports::{Port, Sort};
-use lang_expr::reserved::{SENSORS, SensorIndex};
+use lang_expr::reserved::SensorIndex;
 use lang_expr::{Outside, Value};
 use std::collections::BTreeMap;
 
@@ -48,8 +49,17 @@ impl Readings {
 
     /// What a sensor variable says.
     fn variable(&mut self, sensor: SensorIndex, brick: &mut dyn Brick) -> Option<Value> {
-        let name = SENSORS.get(usize::from(sensor))?.name;
-        self.of(Port::shown_by(name)?, brick)
+        match sensors::part(sensor) {
+            Some((port, place)) => self.part(port, place, brick),
+            None => self.of(Port::shown_by(sensors::name(sensor))?, brick),
+        }
+    }
+
+    /// One number of what a port says.
+    fn part(&mut self, port: Port, place: u8, brick: &mut dyn Brick) -> Option<Value> {
+        let all = self.of(port, brick)?;
+        let items = super::values::items(&all).ok()?;
+        items.get(usize::from(place)).cloned()
     }
 
     /// What a sensor of the camera says.
@@ -145,11 +155,7 @@ impl Machine {
     pub(super) fn read_port(&mut self, read: Read, env: &mut Env<'_>) -> Option<Value> {
         match read {
             Read::Device(port) => self.readings.of(port, env.brick),
-            Read::Part(port, part) => {
-                let all = self.readings.of(port, env.brick)?;
-                let items = super::values::items(&all).ok()?;
-                items.get(usize::from(part)).cloned()
-            }
+            Read::Part(port, place) => self.readings.part(port, place, env.brick),
             Read::Told(motor) => {
                 let power = self.told.get(&motor).copied().unwrap_or_default();
                 Some(Value::Int(power))

@@ -415,6 +415,26 @@ fn what_waits_for_ever_is_bounded_by_its_weight() {
 }
 
 #[test]
+fn each_colour_of_the_camera_is_a_sensor_and_a_name_in_texts() {
+    let main = diagram(
+        "main",
+        DiagramKind::Main,
+        "R Sensor {VarName=colorSensorR}\nB Sensor {VarName=colorSensorB}\nF Text programming {IO0=I0 + colorSensorG * 10}\nS Say\nX Say\nR.OUT > F.I0\nF.O0 > S.DATA\nB.OUT > X.DATA",
+    );
+    let mut robot = Script::default();
+    robot.readings.insert("ColorSensorPort", vec![1, 2, 3]);
+    let (lines, _) = run(&project(vec![main]), 20, &mut robot, |_, _| {});
+    assert!(lines[0].starts_with("20: R 1; B 3; F.O0 21"), "{lines:?}");
+    let absent = error_of("R Sensor {VarName=colorSensorR}\nS Say\nR.OUT > S.DATA");
+    assert!(
+        absent.contains("Sensor 'R': the robot has no such device"),
+        "{absent}"
+    );
+    let absent = error_of("F Text programming {IO0=colorSensorG}\nS Say\nF.O0 > S.DATA");
+    assert!(absent.contains("colorSensorG says nothing"), "{absent}");
+}
+
+#[test]
 fn what_a_wait_keeps_is_bounded_and_is_gone_at_the_end() {
     let at = Target { node: 1, port: 2 };
     for (letter, most) in [
