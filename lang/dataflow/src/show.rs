@@ -10,7 +10,7 @@ mod words;
 mod tests;
 
 pub use picture::picture;
-pub use sentences::{Line, lines, sentences};
+pub use sentences::{Line, full_sentences, lines, sentences};
 
 use crate::blocks::{Content, Property};
 use crate::project::{Block, Diagram};
@@ -68,7 +68,7 @@ fn shown(property: &Property) -> &'static str {
     property.shown.trim_end_matches(['=', ':'])
 }
 
-/// A property that says something.
+/// A property that is said.
 struct Changed<'a> {
     /// The name that the editor shows.
     name: &'a str,
@@ -78,11 +78,16 @@ struct Changed<'a> {
 
 /// Properties that are not those of a new block, then those that the row does not know.
 fn changed(block: &Block) -> Vec<Changed<'_>> {
+    said(block, false)
+}
+
+/// The same, or all properties that are not empty.
+fn said(block: &Block, with_defaults: bool) -> Vec<Changed<'_>> {
     let known = block.row.map_or(&[][..], |row| row.properties);
     let mut all = Vec::new();
     for property in known {
-        let text = block.properties.get(property.name);
-        if let Some(text) = text.filter(|text| *text != property.default) {
+        let text = block.text(property.name);
+        if text != property.default || with_defaults && !text.is_empty() {
             all.push(Changed {
                 name: shown(property),
                 text,

@@ -29,6 +29,9 @@ pub(crate) struct ShowArgs {
     /// Print a data-flow program in its textual form, which all commands read from a file NAME.flow.
     #[arg(long, conflicts_with_all = ["svg", "text"])]
     pub source: bool,
+    /// Say also the properties of a data-flow program that have their defaults.
+    #[arg(long, conflicts_with_all = ["svg", "source"])]
+    pub all: bool,
     /// The diagram with this name in the file [default: the main one]. Sentences are those of the diagram and of the
     /// subprograms that it calls.
     #[arg(long, value_name = "NAME")]
@@ -89,7 +92,11 @@ fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
         let picture = lang_dataflow::show::picture(&project, chosen, args.language);
         return write_picture(args, svg, &picture);
     }
-    standard(lang_dataflow::show::sentences(&project, args.language).as_bytes())?;
+    let said = match args.all {
+        true => lang_dataflow::show::full_sentences(&project, args.language),
+        false => lang_dataflow::show::sentences(&project, args.language),
+    };
+    standard(said.as_bytes())?;
     Ok(0)
 }
 

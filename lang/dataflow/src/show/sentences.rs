@@ -3,7 +3,7 @@
 //! Owns the lines. What blocks are called is known to [`super`].
 
 use super::words::Word;
-use super::{callings, changed, kind, port, shortened};
+use super::{callings, kind, port, said, shortened};
 use crate::limits::SENTENCE_PROPERTY_MAX;
 use crate::project::{Block, Diagram, DiagramKind, Edge, End, Policy, Project};
 use lang_text::problem::Locale;
@@ -11,7 +11,15 @@ use lang_text::problem::Locale;
 /// The program in words for pupils: diagrams, and in each its blocks in the order of the diagram. A line below a block is
 /// an edge that begins there.
 pub fn sentences(project: &Project, locale: Locale) -> String {
-    let lines = lines(project, locale);
+    text_of(lines(project, locale))
+}
+
+/// The same with all properties that are not empty, also those that have their defaults.
+pub fn full_sentences(project: &Project, locale: Locale) -> String {
+    text_of(written(project, locale, true))
+}
+
+fn text_of(lines: Vec<Line>) -> String {
     lines
         .into_iter()
         .flat_map(|line| [line.text, "\n".to_owned()])
@@ -29,9 +37,14 @@ pub struct Line {
 
 /// The sentences line by line.
 pub fn lines(project: &Project, locale: Locale) -> Vec<Line> {
+    written(project, locale, false)
+}
+
+fn written(project: &Project, locale: Locale, with_defaults: bool) -> Vec<Line> {
     let mut writer = Writer {
         project,
         locale,
+        with_defaults,
         out: Vec::new(),
     };
     for at in 0..project.diagrams.len() {
@@ -43,6 +56,8 @@ pub fn lines(project: &Project, locale: Locale) -> Vec<Line> {
 struct Writer<'a> {
     project: &'a Project,
     locale: Locale,
+    /// Whether properties are said that have their defaults.
+    with_defaults: bool,
     out: Vec<Line>,
 }
 
@@ -104,7 +119,7 @@ impl Writer<'_> {
             };
             parts.push(format!("{} {what}", self.word(Word::Runs)));
         }
-        for one in changed(block) {
+        for one in said(block, self.with_defaults) {
             let text = match one.text {
                 "" => self.word(Word::Empty).to_owned(),
                 "true" if one.is_flag => self.word(Word::Yes).to_owned(),

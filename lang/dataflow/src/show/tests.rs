@@ -1,6 +1,6 @@
 //! Sentences and pictures of small projects, with friendly and hostile texts.
 
-use super::{picture, sentences};
+use super::{full_sentences, picture, sentences};
 use crate::blocks;
 use crate::project::{Edge, End, Project};
 use crate::text;
@@ -52,6 +52,22 @@ fn sentences_say_what_blocks_are_and_where_tokens_go() {
 fn sentences_are_in_russian_too() {
     let said = sentences(&project(SMALL), Locale::Russian);
     insta::assert_snapshot!("sentences_in_russian", said);
+}
+
+#[test]
+fn properties_that_have_their_defaults_are_said_if_they_are_asked_for() {
+    let project = project(
+        "diagram a\n W: \"Wait and send\"\n M: Motors(M3Power = 7)\n F: \"Text programming\"(IO0 = 1)\n",
+    );
+    assert_eq!(
+        full_sentences(&project, Locale::English),
+        "Program \"a\":\n  W - Wait and send: time = 300, keep = no\n  \
+         M - Motors: synchronized = no, M1 = 0, M2 = 0, M3 = 7, M4 = 50\n  \
+         F - Text programming: synchronized = yes, IO0 = 1\n"
+    );
+    let said = sentences(&project, Locale::English);
+    assert!(said.contains("  W - Wait and send\n"), "{said}");
+    assert!(said.contains("  M - Motors: M3 = 7\n"), "{said}");
 }
 
 #[test]

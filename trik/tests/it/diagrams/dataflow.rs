@@ -67,6 +67,12 @@ fn saves_and_texts_are_shown_and_become_each_other() {
         sentences.stdout
     );
     assert_eq!(trik(&board, &["show", "wall.qrs"]).stdout, sentences.stdout);
+    let all = trik(&board, &["show", "wall.flow", "--all"]);
+    assert_eq!(all.code(), 0, "{}", all.stderr);
+    for (said, is_said) in [(&all, true), (&sentences, false)] {
+        let default = "M - Motors: synchronized = no, M1 = 0";
+        assert_eq!(said.stdout.contains(default), is_said, "{}", said.stdout);
+    }
     let russian = trik(&board, &["show", "wall.flow", "--language", "ru"]);
     let is_russian = |letter: char| ('\u{410}'..='\u{44f}').contains(&letter);
     assert!(russian.stdout.contains(is_russian), "{}", russian.stdout);
