@@ -454,19 +454,26 @@ fn complain(text: &str) {
 mod tests {
     use super::*;
     use crate::device::KernelSlot;
+    use std::path::{Path, PathBuf};
 
-    #[test]
-    fn a_command_is_written_also_where_somebody_else_has_written_since() {
-        let root = tempfile::tempdir().unwrap();
-        let value = root.path().join("value");
+    /// A motor whose tree is this folder, and its file there.
+    fn motor_in(root: &Path) -> (Arc<Driver>, PathBuf) {
+        let value = root.join("value");
         std::fs::write(&value, "").unwrap();
         let paths = Paths {
             power: "value".to_owned(),
             encoder: None,
         };
-        let tree = Tree::new(root.path().to_owned());
+        let tree = Tree::new(root.to_owned());
         let changes = Changes::new(KernelSlot::default());
         let driver = Driver::new(tree, paths, Control::new(false, 100), changes);
+        (driver, value)
+    }
+
+    #[test]
+    fn a_command_is_written_also_where_somebody_else_has_written_since() {
+        let root = tempfile::tempdir().unwrap();
+        let (driver, value) = motor_in(root.path());
         driver.control().setpoints.duty_cycle = 30;
         for (command, power) in [(Command::RunDirect, "30"), (Command::Stop, "0")] {
             for _ in 0..2 {
@@ -481,15 +488,7 @@ mod tests {
     #[test]
     fn a_motor_that_is_driven_rests_with_a_reason_and_one_that_is_not_is_left_alone() {
         let root = tempfile::tempdir().unwrap();
-        let value = root.path().join("value");
-        std::fs::write(&value, "").unwrap();
-        let paths = Paths {
-            power: "value".to_owned(),
-            encoder: None,
-        };
-        let tree = Tree::new(root.path().to_owned());
-        let changes = Changes::new(KernelSlot::default());
-        let driver = Driver::new(tree, paths, Control::new(false, 100), changes);
+        let (driver, value) = motor_in(root.path());
         assert!(!driver.rest("why"));
         assert_eq!(driver.fault(), "");
         driver.control().setpoints.duty_cycle = 30;
