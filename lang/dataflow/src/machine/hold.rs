@@ -89,21 +89,21 @@ impl Machine {
 
     /// A token comes to a wait that holds none.
     fn take_up(&mut self, to: Target, value: Value, env: &mut Env<'_>) -> Result<(), Halt> {
-        let time = match to.port {
-            TIME => Some(self.whole(to, &value, env)?),
-            _ => None,
-        };
+        if to.port == TIME {
+            let time = self.whole(to, &value, env)?;
+            if let Memory::Hold { ms, .. } = &mut self.states[to.node as usize].memory {
+                *ms = time;
+            }
+            return Ok(());
+        }
         let Memory::Hold { ms, held, .. } = &mut self.states[to.node as usize].memory else {
             return Ok(());
         };
-        if let Some(time) = time {
-            *ms = time;
-            return Ok(());
-        }
         let due = self.now.saturating_add(Self::steps(*ms));
-        *held = Some(match to.port {
-            CONTROL => Held::Start,
-            _ => Held::Token(value),
+        *held = Some(if to.port == CONTROL {
+            Held::Start
+        } else {
+            Held::Token(value)
         });
         self.set_timer(to.node, due);
         Ok(())
