@@ -68,37 +68,34 @@ impl<'a> Output<'a> {
         Ok(())
     }
 
-    /// Refuses standard output, for what only a file can hold.
+    /// Refuses standard output, directories, devices and pipes, for what only a file can hold. A link is what it leads to.
     ///
     /// # Errors
-    /// It is standard output.
-    pub fn refuse_standard(&self) -> Result<(), Refusal> {
-        match self.is_standard() {
-            true => Err(self.refusal(words::needs_file())),
-            false => Ok(()),
-        }
-    }
-
-    /// Takes away what may be replaced, for a file that is seen while it grows, and gives its place. Who still reads the old
-    /// one reads that to its end.
-    ///
-    /// # Errors
-    /// As [`Self::refuse_present`] and [`Self::refuse_standard`]; what is there is no file, or stays.
-    pub fn make_room(&self) -> Result<PathBuf, Refusal> {
-        self.refuse_present()?;
+    /// It is one of them.
+    pub fn refuse_no_file(&self) -> Result<(), Refusal> {
         let Some(path) = self.file() else {
             return Err(self.refusal(words::needs_file()));
         };
+        match path.metadata() {
+            Ok(there) if !there.is_file() => Err(self.refusal(words::is_no_file(&named(path)))),
+            Ok(_) | Err(_) => Ok(()),
+        }
+    }
+
+    /// Takes away what may be replaced, for a file that is seen while it grows, and gives its place. A program that still reads
+    /// the old one reads that to its end.
+    ///
+    /// # Errors
+    /// As [`Self::refuse_present`] and [`Self::refuse_no_file`]; what is there stays.
+    pub fn make_room(&self) -> Result<PathBuf, Refusal> {
+        self.refuse_no_file()?;
+        self.refuse_present()?;
+        let path = self.path.unwrap_or(Path::new("-"));
         if path.symlink_metadata().is_err() {
             return Ok(path.to_owned());
         }
-        // Behind a link is the file that is meant.
+        // Behind a link is the file that is meant; one that leads nowhere is replaced itself.
         let place = settled(path);
-        let is_plain = |there: Metadata| there.is_file() || there.is_symlink();
-        // A device is not ours to take away.
-        if !place.symlink_metadata().is_ok_and(is_plain) {
-            return Err(self.refusal(words::is_no_file(&named(path))));
-        }
         match fs::remove_file(&place) {
             Ok(()) => Ok(place),
             Err(error) => Err(self.refusal(words::unwritten(&named(path), error))),
@@ -242,9 +239,17 @@ mod tests {
     #[test]
     fn no_room_is_made_of_what_is_no_file() {
         let dir = tempfile::tempdir().expect("a directory");
-        for path in [dir.path(), Path::new("/dev/null")] {
-            assert!(told(path, true).contains("is no file"), "{path:?}");
-            assert!(path.exists(), "{path:?}");
+        let (pipe, link) = (dir.path().join("pipe"), dir.path().join("link"));
+        nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).expect("a pipe");
+        // Such as /dev/stdout, behind which is no path at all.
+        let (_read, write) = io::pipe().expect("a pipe");
+        let number = std::os::fd::AsRawFd::as_raw_fd(&write);
+        std::os::unix::fs::symlink(format!("/proc/self/fd/{number}"), &link).expect("a link");
+        for path in [dir.path(), Path::new("/dev/null"), &pipe, &link] {
+            for force in [false, true] {
+                assert!(told(path, force).contains("is no file"), "{path:?}");
+                assert!(path.symlink_metadata().is_ok(), "{path:?}");
+            }
         }
         assert!(told(Path::new("-"), true).contains("standard output"));
     }

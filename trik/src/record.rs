@@ -32,7 +32,7 @@ const USUAL: &str = "/trikfs";
 /// There is no tree, or the file cannot be written.
 pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let output = Output::recording(&args.output, args.force);
-    output.refuse_standard()?;
+    output.refuse_no_file()?;
     output.refuse_present()?;
     let named = match &args.robot {
         Some(Recorded::Network(robot)) => return recorded::record(args, robot),

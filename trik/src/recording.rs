@@ -5,7 +5,7 @@
 
 pub(crate) mod cut;
 pub(crate) mod export;
-mod fresh;
+pub(crate) mod fresh;
 pub(crate) mod plot;
 mod shared;
 

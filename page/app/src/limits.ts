@@ -1,7 +1,7 @@
-// Every limit of the page.
+// Limits of what comes to the page from outside.
 //
-// Owns the numbers only; the code that enforces each one names it from here. How a view is laid out stands with it, and what a
-// format or the protocol says stands with what reads it.
+// Owns the numbers only; the code that enforces each one names it from here. How much a view keeps and how it is laid out stands
+// with the view, and what a format or the protocol says stands with what reads it.
 
 /** Bytes of a recording, and of the last minutes of a robot, which are 16 MiB unless its `trikd` is told otherwise. */
 export const FILE_BYTES_MAX = 64 << 20;

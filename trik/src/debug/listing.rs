@@ -186,8 +186,6 @@ impl Listing {
     /// program is a diagram, whose blocks have no labels.
     pub(crate) fn near_label(&self, text: &str) -> Option<Words> {
         let labels = self.callings.keys().map(String::as_str);
-        // A place that is typed ends at a space.
-        let labels = labels.filter(|label| !label.contains(char::is_whitespace));
         (!self.callings.is_empty()).then(|| did_you_mean(text, labels))
     }
 

@@ -292,8 +292,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "list l",
         "[LINE]",
-        "show the diagram as text",
-        "показать диаграмму как текст",
+        "show the diagram as text, around a line or block",
+        "показать диаграмму как текст, у строки или блока",
     ),
     row(
         "info i",
@@ -488,11 +488,18 @@ fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
 }
 
 fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood> {
-    let (place, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    // A label may have spaces.
+    let (place, rest) = match text.find(" if ") {
+        Some(at) => text.split_at(at),
+        None => match text.split_once(char::is_whitespace) {
+            Some((place, rest)) if block(place, listing).is_ok() => (place, rest),
+            Some(_) | None => (text, ""),
+        },
+    };
     let condition = condition(rest)?;
     Ok(Breakpoint {
         condition,
-        ..Breakpoint::before(block(place, listing)?)
+        ..Breakpoint::before(block(place.trim(), listing)?)
     })
 }
 

@@ -57,6 +57,10 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
         let why = "--source is for data-flow programs, and this is a diagram of control flow";
         return Err(Refusal::new(why));
     }
+    if args.all {
+        let why = "--all is for data-flow programs: of a diagram everything is said";
+        return Err(Refusal::new(why));
+    }
     let names = opened.project.diagrams.iter().map(|one| &*one.name);
     let chosen = choose(names, opened.project.main, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {

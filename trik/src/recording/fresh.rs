@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The file, until it is in its place.
-pub(super) struct Fresh {
+pub(crate) struct Fresh {
     /// Where it is written.
     beside: PathBuf,
     /// Its place.
@@ -24,24 +24,28 @@ impl Fresh {
     /// A new file for this place; one that is there stays until then.
     ///
     /// # Errors
-    /// There is one and it is not to be replaced, it is the file that is read, or none can be made.
-    pub(super) fn new(place: &Path, source: &Path, force: bool) -> Result<Self, Refusal> {
+    /// There is one and it is not to be replaced, it is no file or the one that is read, or none can be made.
+    pub(crate) fn new(place: &Path, source: &Path, force: bool) -> Result<Self, Refusal> {
         let output = Output {
             path: Some(place),
             force,
             source,
             locale: Locale::English,
         };
+        output.refuse_no_file()?;
         output.refuse_present()?;
-        output.refuse_standard()?;
         Ok(Self::beside(place, force)?)
     }
 
     /// A file that takes the place of the one that is read.
     ///
     /// # Errors
-    /// None can be made beside it.
-    pub(super) fn over(source: &Path) -> Result<Self, Error> {
+    /// It is no file, or none can be made beside it.
+    pub(crate) fn over(source: &Path) -> Result<Self, Error> {
+        if source.metadata().is_ok_and(|there| !there.is_file()) {
+            let why = "it is no file, and only a file is replaced: name another one with -o";
+            return Err(Error::file(source, why));
+        }
         Self::beside(source, true)
     }
 
@@ -63,7 +67,7 @@ impl Fresh {
     ///
     /// # Errors
     /// The system has no more open files.
-    pub(super) fn file(&self) -> Result<File, Error> {
+    pub(crate) fn file(&self) -> Result<File, Error> {
         (self.file.try_clone()).map_err(|error| Error::file(&self.place, error))
     }
 
@@ -71,13 +75,17 @@ impl Fresh {
     ///
     /// # Errors
     /// The disk takes no more, or there is another file by now.
-    pub(super) fn place(self) -> Result<(), Error> {
+    pub(crate) fn place(self) -> Result<(), Error> {
         self.put().map_err(|error| Error::file(&self.place, error))
     }
 
     fn put(&self) -> io::Result<()> {
         self.file.sync_all()?;
         if self.replaces {
+            // A recording that only its owner may read stays so.
+            if let Ok(there) = self.place.metadata() {
+                self.file.set_permissions(there.permissions())?;
+            }
             return fs::rename(&self.beside, &self.place);
         }
         // Unlike a renaming this never replaces what came in the meantime.

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::output::Output;
 use crate::record::args::RecordArgs;
+use crate::recording::fresh::Fresh;
 use crate::refusal::Refusal;
 use crate::up::session::signals;
 use clap::Args;
@@ -16,7 +17,7 @@ use nix::sys::signalfd::SignalFd;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Read, Write};
 use std::os::fd::AsFd;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What `trik box save` can be told.
@@ -53,7 +54,11 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
         "recording what {robot} sends into {}; Ctrl-C ends it\n",
         args.output.display()
     ))?;
-    keep(pieces, &Output::recording(&args.output, args.force))
+    // It grows under its name, for programs that look at it meanwhile.
+    let place = Output::recording(&args.output, args.force).make_room()?;
+    let file = File::create_new(&place).map_err(|error| Error::file(&args.output, error))?;
+    let kept = keep(pieces, &args.output, &file)?;
+    kept.tell()
 }
 
 /// Fetches the last minutes of a robot, which has saved them as well.
@@ -62,7 +67,7 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
 /// The robot is not reached or keeps none, or the file is there already or cannot be written.
 pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
     let output = Output::recording(&args.output, args.force);
-    output.refuse_standard()?;
+    output.refuse_no_file()?;
     output.refuse_present()?;
     let robot = match &args.robot {
         Some(robot) => robot.clone(),
@@ -70,37 +75,55 @@ pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
     };
     let mut pieces = Pieces::of(&robot, &[b"box"], None)?;
     pieces.wait()?;
-    keep(pieces, &output)
+    let fresh = Fresh::new(&args.output, Path::new(""), args.force)?;
+    let kept = keep(pieces, &args.output, &fresh.file()?)?;
+    // A part is better than nothing, but not than what is there.
+    if kept.failure.is_none() || !args.output.exists() {
+        fresh.place()?;
+    }
+    kept.tell()
 }
 
 fn say(text: &str) -> Result<(), Refusal> {
     crate::output::standard(text.as_bytes())
 }
 
-/// Puts all pieces into a file; the first is there.
-fn keep(mut pieces: Pieces, output: &Output<'_>) -> Result<u8, Refusal> {
+/// What was put into a file.
+struct Kept {
+    line: String,
+    /// Why it is not all.
+    failure: Option<Error>,
+}
+
+impl Kept {
+    fn tell(self) -> Result<u8, Refusal> {
+        say(&self.line)?;
+        self.failure.map_or(Ok(0), |error| Err(error.into()))
+    }
+}
+
+/// Puts all pieces into a file that has this name for a person; the first is there.
+fn keep(mut pieces: Pieces, name: &Path, file: &File) -> Result<Kept, Error> {
     let begin = Instant::now();
-    let path = output.make_room()?;
-    let file = File::create_new(&path).map_err(|error| Error::file(&path, error))?;
     let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
     if pieces.is_watched {
         // A terminal that is gone has nothing to clear.
         let _ = write!(io::stderr(), "\r\x1b[K");
     }
-    let saved = saved.map_err(|error| Error::file(&path, error))?;
-    let size = path.metadata().map_or(0, |file| file.len());
-    say(&format!(
+    let saved = saved.map_err(|error| Error::file(name, error))?;
+    let size = file.metadata().map_or(0, |file| file.len());
+    let line = format!(
         "{}: {}; {:.1} s, {} messages, {} KiB\n",
-        path.display(),
+        name.display(),
         pieces.end.as_deref().unwrap_or("all is there"),
         begin.elapsed().as_secs_f64(),
         saved.messages,
         size / 1024
-    ))?;
-    match pieces.failure {
-        Some(error) => Err(error.into()),
-        None => Ok(0),
-    }
+    );
+    Ok(Kept {
+        line,
+        failure: pieces.failure,
+    })
 }
 
 /// Pieces of a recording as they come, until the robot, the person or the time ends it.

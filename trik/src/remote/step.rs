@@ -220,7 +220,7 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
             id.ok_or_else(|| {
                 let near = listing.near_label(place);
                 let near = near.map_or_else(String::new, |near| near.english);
-                none(&format!("the diagram has no such block{near}"))
+                none(&format!("the program has no such block{near}"))
             })
         }
         (Err(_), None) => Ok(place.into()),

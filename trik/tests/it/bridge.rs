@@ -76,6 +76,10 @@ fn prometheus_sees_a_robot_drive_and_go() {
     let text = named.text();
     assert_eq!(number(&text, "trikfs_up"), Some(1.0), "{text}");
     named.end();
+    let mut nowhere = home.command(&["bridge", "prometheus", "--robot", "/nowhere"]);
+    let refused = harness::tools::run(&mut nowhere, b"");
+    assert_ne!(refused.code(), 0);
+    assert!(refused.stderr.contains("/nowhere"), "{}", refused.stderr);
     drop(robot);
     eventually("a tree that is gone", || {
         let text = bridge.text();

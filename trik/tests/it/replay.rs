@@ -7,6 +7,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::os::unix::fs::{FileTypeExt, PermissionsExt};
 use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
@@ -293,8 +294,12 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     assert_eq!(refused.status.code(), Some(1));
     assert!(refused.stderr.contains("trik mend"), "{}", refused.stderr);
     assert_eq!(home.run(&["info", "run.mcap"]).status.code(), Some(1));
+    let private = std::fs::Permissions::from_mode(0o600);
+    std::fs::set_permissions(&path, private).expect("a mode");
     let mended = home.run(&["mend", "run.mcap"]);
     assert_eq!(mended.status.code(), Some(0), "{}", mended.stderr);
+    let mode = path.metadata().expect("a file").permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
     let info = home.run(&["info", "run.mcap"]);
     assert!(info.stdout.contains("encoders/E3"), "{}", info.stdout);
     assert!(!info.stdout.contains("sensors/"), "{}", info.stdout);
@@ -310,6 +315,15 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     home.run(&[&words[..], &["--force"]].concat()).good();
     let whole = home.run(&["info", "old.mcap"]).good();
     assert!(whole.contains("encoders/E3"), "{whole}");
+    home.0.fifo("pipe");
+    let refused = home.run(&["mend", "run.mcap", "-o", "pipe", "--force"]);
+    assert!(
+        refused.stderr.contains("pipe is no file"),
+        "{}",
+        refused.stderr
+    );
+    let pipe = home.0.path("pipe").symlink_metadata().expect("a pipe");
+    assert!(pipe.file_type().is_fifo());
     // Nothing is written to before it is known what is to be recorded.
     let refused = home.run(&["record", "-o", "run.mcap", "--seconds", "1"]);
     let why = "run.mcap is there already: --force replaces it";

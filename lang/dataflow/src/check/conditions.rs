@@ -91,7 +91,7 @@ fn is_constant(tree: &Tree) -> bool {
     !tree.statements().is_empty() && !tree.nodes.iter().any(reads)
 }
 
-/// Whether it is the `true` of a gate that has no condition, or of the last way of a switch.
+/// Whether it is the `true` of a gate that has no condition, or of a way of a switch, as the last one often has.
 fn is_usual(program: &Program, text: &Text, tree: &Tree) -> bool {
     let does = program.node(text.node).row.does;
     let statements = tree.statements();

@@ -88,6 +88,7 @@ fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found)
         } else if let Rate::Every(period) = came
             && keeps
             && period < takes
+            && !comes_from_a_loop(program, id)
         {
             let place = port_place(program, id, WAIT_DATA);
             found.warn(place, words::wait_falls_behind(period, takes));
@@ -104,6 +105,28 @@ fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found)
             found.warn(program.place(id), words::short_window(ms, period));
         }
     }
+}
+
+/// Whether a loop, which ends, has a part in what comes to a node; what comes through a call is not known and may.
+fn comes_from_a_loop(program: &Program, id: NodeId) -> bool {
+    let mut givers: HashMap<NodeId, Vec<NodeId>> = HashMap::new();
+    for from in 0..program.nodes.len() as NodeId {
+        for (_, to) in program.edges(from) {
+            givers.entry(to.node).or_default().push(from);
+        }
+    }
+    let mut to_see = vec![id];
+    while let Some(id) = to_see.pop() {
+        // Taken away, so that a cycle ends.
+        for from in givers.remove(&id).unwrap_or_default() {
+            let op = &program.node(from).op;
+            if let Op::Flow(Flow::Loop { .. } | Flow::InPort | Flow::Call(_)) = op {
+                return true;
+            }
+            to_see.push(from);
+        }
+    }
+    false
 }
 
 /// A block that waits for streams of which one has more tokens than another.

@@ -462,6 +462,9 @@ fn a_wait_that_keeps_more_than_it_lets_go_is_told() {
     for good in ["time=100", "time=20 | keep=true", "time=15 | keep=1"] {
         assert_eq!(told(&of(good)), Vec::<String>::new(), "{good}");
     }
+    // What `keep` is for: a burst that ends.
+    let burst = "L Loop {start_border=1 | end_border=4 | time=10}\nW Wait and send {time=100 | keep=true}\nS Say\nL.OUT > W.DATA\nW.OUT > S.DATA";
+    assert_eq!(told(burst), Vec::<String>::new());
 }
 
 #[test]

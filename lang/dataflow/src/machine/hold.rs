@@ -35,29 +35,37 @@ impl Machine {
         matches!(memory, Memory::Hold { held: Some(_), .. })
     }
 
-    /// A token waits its turn; without room for it the oldest ones are lost.
+    /// A token waits its turn; without room for it the oldest ones are lost, or it itself if their going would not be enough.
     fn keep(&mut self, to: Target, value: Value, env: &mut Env<'_>) {
+        let Memory::Hold { kept, .. } = &self.states[to.node as usize].memory else {
+            return;
+        };
+        let own: u32 = kept.iter().map(|(_, value)| value.cells()).sum();
+        let others = self.queued.saturating_sub(own);
+        if others.saturating_add(value.cells()) > limits::QUEUED_CELLS_MAX {
+            self.lose(to, words::kept_too_heavy(), env);
+            return;
+        }
         loop {
             let Memory::Hold { kept, .. } = &mut self.states[to.node as usize].memory else {
                 return;
             };
+            let is_crowded = kept.len() >= limits::QUEUE_MAX;
             let queued = self.queued.saturating_add(value.cells());
-            if kept.len() < limits::QUEUE_MAX && queued <= limits::QUEUED_CELLS_MAX {
+            if !is_crowded && queued <= limits::QUEUED_CELLS_MAX {
                 kept.push_back((to.port, value));
                 self.queued = queued;
                 return;
             }
-            let oldest = kept.pop_front();
-            let (port, weighs) = match &oldest {
-                Some((port, value)) => (*port, value.cells()),
-                None => (to.port, 0),
-            };
-            self.queued = self.queued.saturating_sub(weighs);
-            let at = Target { port, ..to };
-            self.lose(at, words::kept_overflow(limits::QUEUE_MAX), env);
-            if oldest.is_none() {
+            let Some((port, oldest)) = kept.pop_front() else {
                 return;
-            }
+            };
+            self.queued = self.queued.saturating_sub(oldest.cells());
+            let why = match is_crowded {
+                true => words::kept_overflow(limits::QUEUE_MAX),
+                false => words::kept_too_heavy(),
+            };
+            self.lose(Target { port, ..to }, why, env);
         }
     }
 

@@ -154,6 +154,13 @@ pub(crate) fn kept_overflow(places: usize) -> Words {
     )
 }
 
+pub(crate) fn kept_too_heavy() -> Words {
+    Words::new(
+        "the tokens that wait in this program are too large together, so some that come here are lost: keep fewer of them, or shorter ones",
+        "ждущие в программе значения вместе слишком велики, поэтому часть приходящих сюда пропадает: храните меньше значений или более короткие",
+    )
+}
+
 pub(crate) fn runaway(most: u32, blocks: &[String]) -> Words {
     let names = list(blocks.iter().map(String::as_str));
     Words::new(

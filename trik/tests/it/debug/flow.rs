@@ -54,6 +54,22 @@ fn what_means_no_block_is_told_with_all_that_may_be_given_and_the_nearest_label(
 }
 
 #[test]
+fn a_label_with_spaces_is_a_place() {
+    let board = Board::new();
+    let walls = include_str!("../../../../examples/dataflow/walls.flow");
+    board.file("walls.flow", walls);
+    let typed = "break Keep to the wall/turn\nbreak Keep to the wall/turn if 1 > 2\nbreak Keep to the wall/trun\nq\n";
+    let told = debug(&board, &["debug", "walls.flow"], typed).good();
+    for line in [
+        "breakpoint 1 at line ",
+        "breakpoint 2 at line ",
+        "mean 'Keep to the wall/turn'?",
+    ] {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+}
+
+#[test]
 fn what_a_debugger_does_not_change_is_what_it_would_be_alone() {
     let board = board();
     let alone = debug(&board, &["check", "count.flow"], "").good();

@@ -94,15 +94,12 @@ fn saves_and_texts_are_shown_and_become_each_other() {
         debugged.stdout
     );
     board.file("control.qrs", super::square());
-    let control = trik(&board, &["show", "control.qrs", "--source"]);
-    assert_eq!(control.code(), 1);
-    assert!(
-        control
-            .stderr
-            .contains("--source is for data-flow programs"),
-        "{}",
-        control.stderr
-    );
+    for option in ["--source", "--all"] {
+        let control = trik(&board, &["show", "control.qrs", option]);
+        assert_eq!(control.code(), 1);
+        let why = format!("{option} is for data-flow programs");
+        assert!(control.stderr.contains(&why), "{}", control.stderr);
+    }
 }
 
 #[test]

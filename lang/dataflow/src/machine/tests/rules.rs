@@ -465,6 +465,28 @@ fn what_a_wait_keeps_is_bounded_and_is_gone_at_the_end() {
 }
 
 #[test]
+fn one_large_token_does_not_take_the_place_of_all_that_a_wait_keeps() {
+    let at = Target { node: 1, port: 2 };
+    let main = diagram(
+        "main",
+        DiagramKind::Main,
+        "R Message receiver\nW Wait and send {time=9000000 | keep=true}\nS Say\nR.OUT > W.DATA\nW.OUT > S.CF_IN",
+    );
+    let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+    // As if other blocks had nearly all that there is.
+    machine.queued = limits::QUEUED_CELLS_MAX - 100;
+    let letters = ["x".to_owned(), "x".repeat(60_000), "x".to_owned()];
+    for (letter, now) in [0, 0, 0, 1, 2].into_iter().zip((0..).step_by(10)) {
+        robot.mail.push_back((Some(1), letters[letter].clone()));
+        machine.step(now, &mut robot, &mut Deaf);
+    }
+    // Of five tokens the first is held and the large one is lost.
+    assert_eq!(machine.waiting_at(at), 3);
+    let lost: Vec<_> = machine.dropped().collect();
+    assert_eq!(lost, [(at, 1)]);
+}
+
+#[test]
 fn too_many_names_are_told_before_anything_moves() {
     let mut text = String::new();
     for at in 0..5000 {
