@@ -306,9 +306,8 @@ fn noise_is_the_same_for_the_same_seed() {
     assert!(first.iter().any(|reading| *reading > 0), "{first:?}");
 }
 
-/// Not a measurement: only that nothing is slow by orders of magnitude.
 #[test]
-fn many_looks_take_no_time() {
+fn a_look_meets_only_what_lies_around_it() {
     let mut floor = Floor::default();
     for index in 0..5000 {
         let at = f64::from(index);
@@ -318,11 +317,9 @@ fn many_looks_take_no_time() {
             rgb: [0; 3],
         });
     }
-    let begin = std::time::Instant::now();
-    for index in 0..1000 {
+    for index in [0, 700, 2500, 4990] {
         seen(&mut floor, point(f64::from(index), 0.0), 33.0, 18, 2.0);
+        let looked_at = floor.found.len();
+        assert!((10..500).contains(&looked_at), "{looked_at} of 5000");
     }
-    let each = begin.elapsed() / 1000;
-    println!("{each:?} for a look of a camera along a marker's line");
-    assert!(each < std::time::Duration::from_millis(20), "{each:?}");
 }
