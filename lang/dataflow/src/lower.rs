@@ -8,7 +8,7 @@ mod properties;
 use properties::port_of_call;
 pub(crate) use properties::{DATA, INPUTS, chosen, color};
 
-use crate::blocks::{Direction, Does, Kind, Row};
+use crate::blocks::{CONTROL_OUT, Direction, Does, Kind, Row};
 use crate::limits;
 use crate::program::{
     Act, Flow, Gathers, Instance, Node, NodeId, Op, Program, Queue, Target, Text,
@@ -307,6 +307,7 @@ impl<'a> Lowering<'a> {
             id: block.id.as_str().into(),
             caption: block.name.as_str().into(),
             instance,
+            done: None,
             outs: vec![Box::default(); row.ports.len()].into(),
             linked: 0,
             data: 0,
@@ -343,6 +344,8 @@ impl<'a> Lowering<'a> {
         for (at, (outs, queues)) in outs.into_iter().zip(queues).enumerate() {
             let node = &mut self.program.nodes[first as usize + at];
             node.outs = outs.into_iter().map(Vec::into_boxed_slice).collect();
+            let has_edge = |port: &u8| !node.outs[usize::from(*port)].is_empty();
+            node.done = node.row.port(CONTROL_OUT).filter(has_edge);
             node.data = node.linked & data_ports(node.row);
             if node.waits() {
                 let or_usual = |queue: Option<Queue>| queue.unwrap_or(USUAL);

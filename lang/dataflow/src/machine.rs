@@ -206,12 +206,20 @@ impl Machine {
 
     /// Delivers tokens until none is on its way.
     fn tokens(&mut self, env: &mut Env<'_>) -> Result<(), Halt> {
-        while let Some((target, value)) = self.deliveries.pop_front() {
-            if self.stops.is_armed() && self.stops_before(target, &value) {
-                self.deliveries.push_front((target, value));
-                return Err(Halt::Stopped);
+        while let Some(next) = self.deliveries.front() {
+            // A number is read where it lies: moved on right after it was written, it would have to wait for that.
+            if let (target, Value::Float(number)) = *next
+                && !self.stops.is_armed()
+            {
+                self.deliveries.pop_front();
+                self.deliver(target, Value::Float(number), env)?;
+            } else if let Some((target, value)) = self.deliveries.pop_front() {
+                if self.stops.is_armed() && self.stops_before(target, &value) {
+                    self.deliveries.push_front((target, value));
+                    return Err(Halt::Stopped);
+                }
+                self.deliver(target, value, env)?;
             }
-            self.deliver(target, value, env)?;
         }
         Ok(())
     }
@@ -353,45 +361,51 @@ impl Machine {
         &mut self,
         from: NodeId,
         port: u8,
-        value: Value,
+        value: &Value,
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         let targets = env.program.node(from).outs.get(usize::from(port));
         let targets: &[Target] = targets.map_or(&[], |targets| targets);
-        let Some((last, others)) = targets.split_last() else {
+        if targets.is_empty() {
             return Ok(());
-        };
+        }
         if self.deliveries.len() + targets.len() > limits::DELIVERIES_MAX {
             let words = words::too_many_tokens(limits::DELIVERIES_MAX);
             return Err(self.fault(from, words, env));
         }
-        env.trace.sent(self.now, from, port, &value);
-        for &target in others {
+        env.trace.sent(self.now, from, port, value);
+        for &target in targets {
             self.deliveries.push_back((target, value.clone()));
         }
-        self.deliveries.push_back((*last, value));
         Ok(())
     }
 
     /// Sends a unit on the port that says that a block is done, if it has one.
     fn done(&mut self, id: NodeId, env: &mut Env<'_>) -> Result<(), Halt> {
-        match env.program.node(id).row.port(crate::blocks::CONTROL_OUT) {
-            Some(port) => self.send(id, port, Value::Nil, env),
+        match env.program.node(id).done {
+            Some(port) => self.send(id, port, &Value::Nil, env),
             None => Ok(()),
         }
     }
 
     fn deliver(&mut self, to: Target, value: Value, env: &mut Env<'_>) -> Result<(), Halt> {
         let node = env.program.node(to.node);
-        let waits = !node.queues.is_empty() && node.data & (1 << to.port) != 0;
+        let port = 1 << to.port;
+        let waits = !node.queues.is_empty() && node.data & port != 0;
         if !waits {
             self.count(to.node, env)?;
             return self.react(to, value, env);
         }
-        self.queue(node, to, value, env)?;
-        while let Some(tokens) = self.take(node, to.node) {
+        // It is all that the block waits for: most blocks have one input, and no use of a queue.
+        let is_alone = node.data == port;
+        if is_alone && !self.has_queued(to) {
             self.count(to.node, env)?;
-            self.react_to_all(to.node, tokens, env)?;
+            return self.react_to_one(to, value, env);
+        }
+        self.queue(node, to, value, env)?;
+        while self.is_complete(node, to.node) {
+            self.count(to.node, env)?;
+            self.react_to_all(to.node, env)?;
         }
         Ok(())
     }
@@ -434,22 +448,24 @@ impl Machine {
         }
     }
 
-    /// The oldest token of each linked data input, if each has one.
-    fn take(&mut self, node: &Node, id: NodeId) -> Option<[Option<Value>; 16]> {
-        let queues = &mut self.queues[id as usize];
-        let mut ports = (0..queues.len()).filter(|port| node.data & (1 << port) != 0);
-        if ports.any(|port| queues[port].is_empty()) {
-            return None;
-        }
-        let mut tokens = [const { None }; 16];
-        for (port, queue) in queues.iter_mut().enumerate() {
-            if node.data & (1 << port) != 0 {
-                tokens[port] = queue.pop_front();
-                let weighs = tokens[port].as_ref().map_or(0, Value::cells);
-                self.queued = self.queued.saturating_sub(weighs);
-            }
-        }
-        Some(tokens)
+    /// Whether tokens wait at a port, as they may after a change of the program. Most often none does anywhere.
+    fn has_queued(&self, at: Target) -> bool {
+        self.queued != 0 && !self.queues[at.node as usize][usize::from(at.port)].is_empty()
+    }
+
+    /// Whether each linked data input has a token.
+    fn is_complete(&self, node: &Node, id: NodeId) -> bool {
+        let queues = (0..).zip(&self.queues[id as usize]);
+        queues
+            .into_iter()
+            .all(|(port, queue)| node.data & (1 << port) == 0 || !queue.is_empty())
+    }
+
+    /// Takes the oldest token that waits at an input.
+    fn take(&mut self, id: NodeId, port: usize) -> Option<Value> {
+        let value = self.queues[id as usize].get_mut(port)?.pop_front()?;
+        self.queued = self.queued.saturating_sub(value.cells());
+        Some(value)
     }
 
     /// A token is lost; each port tells the first time.
@@ -467,16 +483,24 @@ impl Machine {
     }
 
     /// Counts a reaction, so that a cycle without waiting ends.
+    #[inline]
     fn count(&mut self, id: NodeId, env: &mut Env<'_>) -> Result<(), Halt> {
         self.firings += 1;
         env.trace.fired(self.now, id);
         if self.firings + limits::REMEMBERED_MAX > limits::FIRINGS_MAX {
-            if !self.suspects.contains(&id) {
-                self.suspects.push(id);
-            }
-            if self.firings > limits::FIRINGS_MAX {
-                return Err(self.runaway(env));
-            }
+            return self.suspect(id, env);
+        }
+        Ok(())
+    }
+
+    /// Remembers who reacts near the limit.
+    #[cold]
+    fn suspect(&mut self, id: NodeId, env: &Env<'_>) -> Result<(), Halt> {
+        if !self.suspects.contains(&id) {
+            self.suspects.push(id);
+        }
+        if self.firings > limits::FIRINGS_MAX {
+            return Err(self.runaway(env));
         }
         Ok(())
     }

@@ -68,6 +68,8 @@ pub struct Node {
     pub caption: Rc<str>,
     /// Which instance it is of.
     pub instance: u32,
+    /// Its output that says that it is done, if it has one and an edge is there.
+    pub done: Option<u8>,
     /// Where tokens go, by the number of the port.
     pub outs: Box<[Box<[Target]>]>,
     /// Inputs with at least one edge, as bits by the number of the port.

@@ -5,6 +5,7 @@
 
 use super::analyse::Analysis;
 use super::escape;
+use super::flat::{self, Step};
 use super::literal;
 use super::names::{Kind, Slot};
 use super::reserved::{Function, SensorIndex};
@@ -54,6 +55,8 @@ pub(super) enum Op {
     Assign(Slot, Id),
     /// Base, indices and, after them in the operands, the value.
     AssignElement(Base, Span),
+    /// Arithmetic: steps that stand for this part and what is below it.
+    Steps(Span),
     /// Index into the faults: told when it runs.
     Broken(u32),
 }
@@ -71,6 +74,9 @@ pub(super) struct Code {
     pub(super) ops: Vec<Op>,
     pub(super) places: Vec<Position>,
     pub(super) operands: Vec<Id>,
+    pub(super) steps: Vec<Step>,
+    /// The part that each step is of.
+    pub(super) step_parts: Vec<Id>,
     pub(super) constants: Vec<Value>,
     pub(super) faults: Vec<Reason>,
     pub(super) root: Id,
@@ -87,6 +93,13 @@ impl Code {
 
 /// Compiles what an analysis found good.
 pub(super) fn compile(analysis: &Analysis<'_>) -> Code {
+    let mut code = tree(analysis);
+    flat::flatten(&mut code);
+    code
+}
+
+/// The same as a tree alone.
+pub(super) fn tree(analysis: &Analysis<'_>) -> Code {
     let mut compiler = Compiler {
         analysis,
         code: Code::default(),

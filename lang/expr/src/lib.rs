@@ -13,6 +13,7 @@ mod call;
 mod code;
 mod elements;
 mod escape;
+mod flat;
 pub mod fuzz;
 mod lexer;
 pub mod limits;
@@ -199,10 +200,16 @@ fn problems(faults: &[Fault]) -> Vec<Problem> {
 /// Infers the types of a text and prepares it for [`evaluate`]; cheap when no type has changed since the last time.
 ///
 /// Errors come in the real program's order; texts with errors teach their types all the same, as there.
+#[inline]
 pub fn analyse(source: &mut Source, names: &mut Names) -> Result<(), Vec<Problem>> {
     if source.good_at == Some(names.epoch()) {
         return Ok(());
     }
+    analyse_anew(source, names)
+}
+
+#[cold]
+fn analyse_anew(source: &mut Source, names: &mut Names) -> Result<(), Vec<Problem>> {
     source.good_at = None;
     if !source.unreadable.is_empty() {
         source.faults.clone_from(&source.unreadable);
@@ -240,9 +247,25 @@ pub fn evaluate(
     store: &mut Store,
     outside: &mut dyn Outside,
 ) -> Result<Value, Vec<Problem>> {
+    let mut value = Value::Nil;
+    evaluate_to(source, names, store, outside, &mut value)?;
+    Ok(value)
+}
+
+/// The same, written where it is wanted: a value that is handed through several calls costs more than its arithmetic.
+pub fn evaluate_to(
+    source: &Source,
+    names: &Names,
+    store: &mut Store,
+    outside: &mut dyn Outside,
+    into: &mut Value,
+) -> Result<(), Vec<Problem>> {
     run(source, names, store, outside, |run, root| {
-        match source.wanted {
-            Wanted::Statements | Wanted::Any => run.value(root),
+        *into = match source.wanted {
+            Wanted::Statements | Wanted::Any => match run.number_alone(root) {
+                Some(number) => Value::Float(number),
+                None => run.value(root),
+            },
             Wanted::Bool => Value::Bool(run.truth(root)),
             Wanted::Int => Value::Int(run.whole(root)),
             Wanted::Float => Value::Float(run.number(root)),
@@ -252,7 +275,7 @@ pub fn evaluate(
                 let items = texts.into_iter().map(Value::Text).collect();
                 Value::List(Rc::new(value::List::new(items).unwrap_or_default()))
             }
-        }
+        };
     })
 }
 
@@ -276,6 +299,7 @@ pub fn evaluate_int(
     run(source, names, store, outside, |run, root| run.whole(root))
 }
 
+#[inline]
 fn run<T>(
     source: &Source,
     names: &Names,

@@ -106,6 +106,7 @@ impl<'a> Run<'a> {
             Op::MinusNarrow(operand) => -f64::from(self.number(operand) as f32),
             Op::Binary(operator, left, right) => self.binary_number(id, operator, left, right),
             Op::Call(function, span) => self.call_number(id, function, span),
+            Op::Steps(span) => self.steps(span),
             Op::Nil
             | Op::Bool(_)
             | Op::Constant(_)
@@ -191,7 +192,9 @@ impl<'a> Run<'a> {
             }
             Op::Sensor(sensor) => return self.outside.sensor(sensor).to_int(),
             Op::BitNot(operand) => return !self.whole(operand),
-            Op::Float(_) | Op::Minus(_) | Op::MinusNarrow(_) => return round(self.number(id)),
+            Op::Float(_) | Op::Minus(_) | Op::MinusNarrow(_) | Op::Steps(_) => {
+                return round(self.number(id));
+            }
             Op::Binary(operator, left, right) => (operator, left, right),
             Op::Nil
             | Op::Bool(_)
@@ -307,6 +310,7 @@ impl<'a> Run<'a> {
             | Op::Block(_)
             | Op::Assign(..)
             | Op::AssignElement(..)
+            | Op::Steps(_)
             | Op::Broken(_) => return self.value_truth(id),
         };
         match operator {
@@ -372,6 +376,9 @@ impl<'a> Run<'a> {
             let left = self.number(left);
             return numbers(left, self.number(right));
         }
+        if let (Some(left), Some(right)) = (self.at_hand(left), self.at_hand(right)) {
+            return numbers(left, right);
+        }
         let at = left;
         let (left, right) = (self.value(left), self.value(right));
         match (&left, &right) {
@@ -392,6 +399,41 @@ impl<'a> Run<'a> {
                 self.look_at_number(&right, at);
                 numbers(left.to_float(), right.to_float())
             }
+        }
+    }
+
+    /// A number that nobody has to be asked for.
+    #[inline]
+    fn at_hand(&self, id: Id) -> Option<f64> {
+        let value = match self.code.ops[id as usize] {
+            Op::Int(number) => return Some(f64::from(number)),
+            Op::Float(number) => return Some(number),
+            Op::Variable(slot) => self.store.get(slot)?,
+            Op::Nil
+            | Op::Bool(_)
+            | Op::Constant(_)
+            | Op::Sensor(_)
+            | Op::Minus(_)
+            | Op::MinusNarrow(_)
+            | Op::Not(_)
+            | Op::TextLength(_)
+            | Op::Length(_)
+            | Op::BitNot(_)
+            | Op::Binary(..)
+            | Op::Element(..)
+            | Op::Elements(..)
+            | Op::Call(..)
+            | Op::Table(_)
+            | Op::Block(_)
+            | Op::Assign(..)
+            | Op::AssignElement(..)
+            | Op::Steps(_)
+            | Op::Broken(_) => return None,
+        };
+        match value {
+            Value::Int(number) => Some(f64::from(*number)),
+            Value::Float(number) => Some(*number),
+            Value::Nil | Value::Bool(_) | Value::Text(_) | Value::Unset | Value::List(_) => None,
         }
     }
 
@@ -421,6 +463,7 @@ impl<'a> Run<'a> {
             },
             Op::Sensor(sensor) => self.outside.sensor(sensor),
             Op::Minus(_) | Op::MinusNarrow(_) => Value::Float(self.number(id)),
+            Op::Steps(span) => Value::Float(self.steps(span)),
             Op::Not(_) => Value::Bool(self.truth(id)),
             Op::BitNot(_) => Value::Int(self.whole(id)),
             Op::TextLength(operand) | Op::Length(operand) => {

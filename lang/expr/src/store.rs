@@ -23,6 +23,9 @@ impl Store {
 
     /// Sets a value; gives it back if all values together would hold more than `limits::STORE_CELLS_MAX`.
     pub fn set(&mut self, slot: Slot, value: Value) -> Result<(), Value> {
+        if self.set_like(slot, &value) {
+            return Ok(());
+        }
         let index = slot as usize;
         if index >= self.values.len() {
             if index >= limits::NAMES_MAX {
@@ -41,6 +44,20 @@ impl Store {
         Ok(())
     }
 
+    /// Sets a number or truth where there is one of the same type, which costs no more than that; whether there was.
+    #[inline]
+    pub fn set_like(&mut self, slot: Slot, value: &Value) -> bool {
+        let place = self.values.get_mut(slot as usize).and_then(Option::as_mut);
+        match (place, value) {
+            (Some(Value::Int(place)), Value::Int(number)) => *place = *number,
+            (Some(Value::Float(place)), Value::Float(number)) => *place = *number,
+            (Some(Value::Bool(place)), Value::Bool(truth)) => *place = *truth,
+            (_, _) => return false,
+        }
+        self.note(slot);
+        true
+    }
+
     /// Takes a value away: the variable has none until it is set again.
     pub fn remove(&mut self, slot: Slot) -> Option<Value> {
         let value = self.values.get_mut(slot as usize)?.take();
@@ -57,6 +74,7 @@ impl Store {
         self.cells = 0;
     }
 
+    #[inline]
     fn note(&mut self, slot: Slot) {
         if self.written.last() == Some(&slot) {
             return;

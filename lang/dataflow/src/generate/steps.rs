@@ -8,7 +8,6 @@ use super::code::{Phrase, text, truth};
 use super::language::{Word, quoted, say};
 use super::plan::{ENCODER_OUT, Plan, gives_encoder, shows};
 use super::step::{Body, Routine, Step};
-use crate::blocks::CONTROL_OUT;
 use crate::machine::SERVO_DEGREES;
 use crate::program::{Act, Flow, Formula, Gathers, NodeId, Op, Source, Target as To};
 use crate::project::Policy;
@@ -120,7 +119,7 @@ impl Writer<'_, '_> {
     }
 
     fn done(&self, id: NodeId) -> Vec<Step> {
-        match self.plan.program.node(id).row.port(CONTROL_OUT) {
+        match self.plan.program.node(id).done {
             Some(port) => self.send_unit(id, port),
             None => Vec::new(),
         }

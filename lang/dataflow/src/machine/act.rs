@@ -42,7 +42,7 @@ impl Machine {
             }
             Act::ReadPort(read) => {
                 return match self.read_port(*read, env) {
-                    Some(value) => self.send(to.node, 1, value, env),
+                    Some(value) => self.send(to.node, 1, &value, env),
                     None => Err(self.fault(to.node, words::no_reading(), env)),
                 };
             }
@@ -340,7 +340,7 @@ impl Machine {
             if piece.len() > limits::TEXT_BYTES_MAX {
                 return Err(self.fault(to.node, words::too_large_token(), env));
             }
-            self.send(to.node, OUT, Value::text(piece), env)?;
+            self.send(to.node, OUT, &Value::text(piece), env)?;
         }
         Ok(())
     }

@@ -19,23 +19,37 @@ impl Machine {
 
     /// The value of an expression.
     pub(super) fn evaluate(&mut self, formula: Formula, env: &mut Env<'_>) -> Result<Value, Halt> {
-        let state = &self.states[env.program.formulas[formula as usize].node as usize];
+        let mut value = Value::Nil;
+        self.evaluate_to(formula, &mut value, env)?;
+        Ok(value)
+    }
+
+    /// The same, written where it is wanted.
+    pub(super) fn evaluate_to(
+        &mut self,
+        formula: Formula,
+        into: &mut Value,
+        env: &mut Env<'_>,
+    ) -> Result<(), Halt> {
+        let state = &self.states[self.formulas.node(formula) as usize];
         let mut robot = Robot {
             readings: &mut self.readings,
             brick: env.brick,
             now: self.now,
             missing: None,
         };
-        let value = self
+        let outcome = self
             .formulas
-            .evaluate(env.program, formula, state, &mut robot);
-        let missing = robot.missing;
-        self.checked(formula, value, missing, env)
+            .evaluate(env.program, formula, state, &mut robot, into);
+        match (outcome, robot.missing) {
+            (Ok(()), None) => Ok(()),
+            (outcome, missing) => Err(self.explain(formula, outcome.err(), missing, env)),
+        }
     }
 
     /// The truth of an expression.
     pub(super) fn truth(&mut self, formula: Formula, env: &mut Env<'_>) -> Result<bool, Halt> {
-        let state = &self.states[env.program.formulas[formula as usize].node as usize];
+        let state = &self.states[self.formulas.node(formula) as usize];
         let mut robot = Robot {
             readings: &mut self.readings,
             brick: env.brick,
@@ -43,32 +57,35 @@ impl Machine {
             missing: None,
         };
         let truth = self.formulas.truth(env.program, formula, state, &mut robot);
-        let missing = robot.missing;
-        self.checked(formula, truth, missing, env)
+        match (truth, robot.missing) {
+            (Ok(truth), None) => Ok(truth),
+            (truth, missing) => Err(self.explain(formula, truth.err(), missing, env)),
+        }
     }
 
-    /// What an expression gave, or where and why it failed.
-    fn checked<T>(
+    /// Where and why an expression failed: a sensor is missing, or there is another reason.
+    #[cold]
+    fn explain(
         &self,
         formula: Formula,
-        value: Result<T, Reason>,
+        reason: Option<Reason>,
         missing: Option<u16>,
         env: &Env<'_>,
-    ) -> Result<T, Halt> {
-        let (words, at) = match (missing, value) {
+    ) -> Halt {
+        let (words, at) = match (missing, reason) {
             (Some(sensor), _) => (words::sensor_missing(sensors::name(sensor)), None),
-            (None, Ok(value)) => return Ok(value),
-            (None, Err(Reason::Unbound(name))) => (words::unbound(name), None),
-            (None, Err(Reason::Unit(name))) => (words::unit_read(name), None),
-            (None, Err(Reason::Problems(problems))) => {
+            (None, Some(Reason::Unbound(name))) => (words::unbound(name), None),
+            (None, Some(Reason::Unit(name))) => (words::unit_read(name), None),
+            (None, Some(Reason::Problems(problems))) => {
                 let first = problems.into_iter().next();
                 let first = first.unwrap_or_else(|| Problem::error(Words::new("", "")));
                 (first.words, first.place.position)
             }
+            (None, None) => (Words::new("", ""), None),
         };
         let text = &env.program.formulas[formula as usize];
         let place = env.program.property_place(text.node, text.property, at);
-        Err(self.fault_at(place, words))
+        self.fault_at(place, words)
     }
 
     /// The text of an expression that came as a token.

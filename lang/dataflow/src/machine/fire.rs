@@ -49,10 +49,10 @@ impl Machine {
             Flow::Call(instance) => self.enter(to, value, *instance, env),
             Flow::InPort | Flow::Zip => Ok(()),
             Flow::OutPort(target) => match *target {
-                Some(Target { node, port }) => self.send(node, port, value, env),
+                Some(Target { node, port }) => self.send(node, port, &value, env),
                 None => Ok(()),
             },
-            Flow::Constant(constant) => self.send(id, 1, constant.clone(), env),
+            Flow::Constant(constant) => self.send(id, 1, constant, env),
             Flow::Variable { run, names } => self.variable(to, value, *run, names, env),
             Flow::Random { bounds, every_ms } => match every_ms {
                 Some(every) => {
@@ -72,44 +72,66 @@ impl Machine {
         }
     }
 
-    /// A block has a token at each of its linked data inputs.
-    pub(super) fn react_to_all(
-        &mut self,
-        id: NodeId,
-        mut tokens: [Option<Value>; 16],
-        env: &mut Env<'_>,
-    ) -> Result<(), Halt> {
+    /// A block has a token at each of its linked data inputs, which are taken away.
+    pub(super) fn react_to_all(&mut self, id: NodeId, env: &mut Env<'_>) -> Result<(), Halt> {
         let Some(gathers) = env.program.node(id).gathers() else {
             return Ok(());
         };
         match gathers {
             Gathers::Function(texts) => {
                 for at in 0..texts.len() {
-                    if let Some(value) = tokens[FUNCTION_IN + 2 * at].take() {
+                    if let Some(value) = self.take(id, FUNCTION_IN + 2 * at) {
                         self.bind(id, at, value);
                     }
                 }
                 self.compute_all(id, texts, env)
             }
             Gathers::Drive(devices) => {
-                for (at, (port, _)) in devices.iter().enumerate() {
-                    if let Some(value) = &tokens[FUNCTION_IN + at] {
+                for (port, (device, _)) in (FUNCTION_IN..).zip(devices) {
+                    if let Some(value) = self.take(id, port) {
                         let from = Target {
                             node: id,
-                            port: (FUNCTION_IN + at) as u8,
+                            port: port as u8,
                         };
-                        self.drive(from, *port, value, env)?;
+                        self.drive(from, *device, &value, env)?;
                     }
                 }
                 self.done(id, env)
             }
             // DATA1, OUT, DATA2.
-            Gathers::Zip => match [tokens[0].take(), tokens[2].take()] {
+            Gathers::Zip => match [self.take(id, 0), self.take(id, 2)] {
                 [Some(one), Some(other)] => {
-                    self.send_made(id, 1, values::list(vec![one, other]), env)
+                    self.send_made(id, 1, &values::list(vec![one, other]), env)
                 }
                 _ => Ok(()),
             },
+        }
+    }
+
+    /// The same of a block whose only linked data input is this one.
+    pub(super) fn react_to_one(
+        &mut self,
+        to: Target,
+        value: Value,
+        env: &mut Env<'_>,
+    ) -> Result<(), Halt> {
+        let Some(gathers) = env.program.node(to.node).gathers() else {
+            return Ok(());
+        };
+        let port = usize::from(to.port).saturating_sub(FUNCTION_IN);
+        match gathers {
+            Gathers::Function(texts) => {
+                self.bind(to.node, port / 2, value);
+                self.compute_all(to.node, texts, env)
+            }
+            Gathers::Drive(devices) => {
+                if let Some((device, _)) = devices.get(port) {
+                    self.drive(to, *device, &value, env)?;
+                }
+                self.done(to.node, env)
+            }
+            // One token is no pair.
+            Gathers::Zip => Ok(()),
         }
     }
 
@@ -163,8 +185,9 @@ impl Machine {
         match text {
             None => Ok(()),
             Some(text) => {
-                let value = self.evaluate(text, env)?;
-                self.send_made(id, FUNCTION_OUT + 2 * at as u8, value, env)
+                let mut value = Value::Nil;
+                self.evaluate_to(text, &mut value, env)?;
+                self.send_made(id, FUNCTION_OUT + 2 * at as u8, &value, env)
             }
         }
     }
@@ -174,14 +197,14 @@ impl Machine {
         &mut self,
         id: NodeId,
         port: u8,
-        value: Value,
+        value: &Value,
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
-        if !values::fits(&value) {
+        if !values::fits(value) {
             let at = Target { node: id, port };
             return Err(self.fault_at_port(at, words::too_large_token(), env));
         }
-        self.send(id, port, value, env)
+        self.send(id, port, &value, env)
     }
 
     fn decide(
@@ -195,7 +218,7 @@ impl Machine {
             self.bind(to.node, 0, value.clone());
         }
         let port = if self.truth(condition, env)? { 2 } else { 3 };
-        self.send(to.node, port, value, env)
+        self.send(to.node, port, &value, env)
     }
 
     fn switch(
@@ -225,7 +248,7 @@ impl Machine {
                     }
                     None => value.clone(),
                 };
-                self.send_made(to.node, port, value, env)?;
+                self.send_made(to.node, port, &value, env)?;
                 if first_only {
                     break;
                 }
@@ -294,7 +317,7 @@ impl Machine {
             .checked_add(step)
             .filter(|&one| !is_over(one, last, step));
         *next = following;
-        self.send(id, 5, Value::Int(number), env)?;
+        self.send(id, 5, &Value::Int(number), env)?;
         match following {
             Some(_) => self.repeat(id, due, round_up(time_ms)),
             None => self.done(id, env)?,
@@ -364,7 +387,7 @@ impl Machine {
         }
         for &(port, input) in &body.inputs {
             if port == to.port {
-                self.send(input, 0, value.clone(), env)?;
+                self.send(input, 0, &value, env)?;
             }
         }
         Ok(())
@@ -393,7 +416,7 @@ impl Machine {
             let Some(value) = self.formulas.get(name) else {
                 return Err(self.fault(to.node, words::unbound(name), env));
             };
-            self.send_made(to.node, OUT, value, env)?;
+            self.send_made(to.node, OUT, &value, env)?;
         }
         self.done(to.node, env)
     }
@@ -428,7 +451,7 @@ impl Machine {
         }
         ends.sort_unstable();
         let number = env.brick.random(ends[0], ends[1]);
-        self.send(id, 1, Value::Int(number), env)
+        self.send(id, 1, &Value::Int(number), env)
     }
 
     fn filter(
@@ -456,7 +479,7 @@ impl Machine {
         match to.port {
             0 => *pause_ms = number,
             2 => *count = number,
-            _ if *count == 0 => return self.send(to.node, 1, Value::Nil, env),
+            _ if *count == 0 => return self.send(to.node, 1, &Value::Nil, env),
             _ => {
                 let pause = u32::try_from(*pause_ms).unwrap_or(0);
                 let is_early =
@@ -466,14 +489,14 @@ impl Machine {
                 }
                 self.bind(to.node, 0, value.clone());
                 if !self.truth(condition, env)? {
-                    return self.send(to.node, 1, Value::Nil, env);
+                    return self.send(to.node, 1, &Value::Nil, env);
                 }
                 if let Memory::Gate { count, last, .. } = &mut self.states[to.node as usize].memory
                 {
                     *count -= i32::from(*count > 0);
                     *last = Some(self.now);
                 }
-                return self.send(to.node, 3, value, env);
+                return self.send(to.node, 3, &value, env);
             }
         }
         Ok(())
@@ -501,7 +524,7 @@ impl Machine {
             since.is_none_or(|since| self.now - since >= time)
         };
         match passes {
-            true => self.send(to.node, 2, value, env),
+            true => self.send(to.node, 2, &value, env),
             false => Ok(()),
         }
     }
@@ -512,8 +535,8 @@ impl Machine {
             let words = words::list_short(items.len(), 2);
             return Err(self.fault_at_port(to, words, env));
         };
-        self.send(to.node, 1, one.clone(), env)?;
-        self.send(to.node, 2, other.clone(), env)
+        self.send(to.node, 1, one, env)?;
+        self.send(to.node, 2, other, env)
     }
 }
 

@@ -18,6 +18,8 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
     sources: Vec<Source>,
+    /// The node of each text: what is looked up for each token stands close together.
+    nodes: Vec<NodeId>,
     /// Own names that each text reads, as bits in the order of [`crate::program::Text::own`].
     reads: Vec<u8>,
     names: Names,
@@ -63,6 +65,7 @@ impl Formulas {
     fn with(program: &Program, names: Names, store: Store) -> Self {
         let mut formulas = Self {
             sources: Vec::with_capacity(program.formulas.len()),
+            nodes: program.formulas.iter().map(|text| text.node).collect(),
             reads: Vec::with_capacity(program.formulas.len()),
             names,
             store,
@@ -103,6 +106,11 @@ impl Formulas {
         self.sources.push(source);
     }
 
+    /// The node of a text.
+    pub fn node(&self, index: Formula) -> NodeId {
+        self.nodes[index as usize]
+    }
+
     /// Whether the program has more names than there is room for.
     pub fn has_too_many_names(&self) -> bool {
         self.is_full
@@ -134,6 +142,10 @@ impl Formulas {
             return;
         }
         state.units &= !bit;
+        // Then nothing has to be inferred anew.
+        if self.store.set_like(slot, &value) {
+            return;
+        }
         if !self.keeps_type(slot, &value) && self.names.retype(slot, &value) {
             // What the texts have learned of the former type is void.
             let (first, count) = self.of_node[id as usize];
@@ -147,28 +159,27 @@ impl Formulas {
         }
     }
 
-    /// Whether a slot has a value whose type this one has as well: then nothing has to be inferred anew.
+    /// Whether a slot has a text and gets one: then nothing has to be inferred anew either.
     fn keeps_type(&self, slot: Slot, value: &Value) -> bool {
-        match (self.store.get(slot), value) {
-            (Some(Value::Int(_)), Value::Int(_))
-            | (Some(Value::Float(_)), Value::Float(_))
-            | (Some(Value::Bool(_)), Value::Bool(_))
-            | (Some(Value::Text(_)), Value::Text(_)) => true,
-            (Some(_) | None, _) => false,
-        }
+        matches!(
+            (self.store.get(slot), value),
+            (Some(Value::Text(_)), Value::Text(_))
+        )
     }
 
-    /// The value of a text, once its own names are bound.
+    /// Writes the value of a text, once its own names are bound.
     pub fn evaluate(
         &mut self,
         program: &Program,
         index: Formula,
         state: &State,
         outside: &mut dyn Outside,
-    ) -> Result<Value, Reason> {
+        into: &mut Value,
+    ) -> Result<(), Reason> {
         self.ready(program, index, state)?;
         let source = &self.sources[index as usize];
-        lang_expr::evaluate(source, &self.names, &mut self.store, outside).map_err(Reason::Problems)
+        lang_expr::evaluate_to(source, &self.names, &mut self.store, outside, into)
+            .map_err(Reason::Problems)
     }
 
     /// The truth of a text.

@@ -74,7 +74,7 @@ impl Machine {
         if let Memory::Hold { held, .. } = &mut self.states[id as usize].memory
             && let Some(Held::Token(token)) = held.take()
         {
-            self.send(id, OUT, token, env)?;
+            self.send(id, OUT, &token, env)?;
         }
         self.done(id, env)?;
         self.take_kept(id, env)

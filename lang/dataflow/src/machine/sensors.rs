@@ -172,7 +172,7 @@ impl Machine {
             };
             match source {
                 Source::Sensor(_) | Source::Detect(_) => match self.reading(source, env) {
-                    Some(value) => self.send(id, SENSOR_OUT, value, env)?,
+                    Some(value) => self.send(id, SENSOR_OUT, &value, env)?,
                     None => self.gap(id, env),
                 },
                 Source::Encoders(devices) => self.poll_encoders(id, devices, env)?,
@@ -212,7 +212,7 @@ impl Machine {
             match self.readings.of(*port, env.brick) {
                 Some(value) => {
                     let degrees = value.to_int().saturating_add(offset);
-                    self.send(id, ENCODER_OUT + at as u8, Value::Int(degrees), env)?;
+                    self.send(id, ENCODER_OUT + at as u8, &Value::Int(degrees), env)?;
                 }
                 None => self.gap(id, env),
             }
@@ -242,7 +242,7 @@ impl Machine {
                 (true | false, _) => None,
             };
             if let Some([x, y]) = at {
-                self.send(id, PAD_OUT, list(vec![number, x, y]), env)?;
+                self.send(id, PAD_OUT, &list(vec![number, x, y]), env)?;
             }
             *was_pressed = is_pressed;
         }
@@ -250,13 +250,13 @@ impl Machine {
             let value = self.pad_number(&format!("gamepadButton{button}"), env);
             if value != 0 {
                 let token = list(vec![Value::Int(button), Value::Int(value)]);
-                self.send(id, BUTTON_OUT, token, env)?;
+                self.send(id, BUTTON_OUT, &token, env)?;
             }
         }
         let turned = self.pad_number("gamepadWheel", env);
         if wheel != Some(turned) {
             if wheel.is_some() || turned != 0 {
-                self.send(id, WHEEL_OUT, Value::Int(turned), env)?;
+                self.send(id, WHEEL_OUT, &Value::Int(turned), env)?;
             }
             wheel = Some(turned);
         }
@@ -285,7 +285,7 @@ impl Machine {
             };
             let token = list(vec![Value::Int(sender.unwrap_or(0)), Value::text(text)]);
             for &id in &receivers {
-                self.send(id, SENSOR_OUT, token.clone(), env)?;
+                self.send(id, SENSOR_OUT, &token, env)?;
             }
         }
         Ok(())
