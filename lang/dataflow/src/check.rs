@@ -8,6 +8,7 @@ mod edges;
 mod givers;
 mod rates;
 mod shape;
+mod tokens;
 mod types;
 mod words;
 

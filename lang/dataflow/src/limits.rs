@@ -47,6 +47,8 @@ pub const REPEATED_MAX: usize = 60;
 /// How often types and periods are handed on along edges; at the end of a chain that is longer in the wrong order they stay
 /// unknown.
 pub const PASSES_MAX: usize = 12;
+/// How often the types of a program are inferred, each time with fewer variables whose type is taken from their tokens.
+pub const GUESSES_MAX: usize = 3;
 /// Pairs of blocks that are looked at for one motor.
 pub const WRITER_PAIRS_MAX: usize = 64;
 /// Reactions before the limit of an instant from which the blocks are remembered that may be a cycle.

@@ -2,6 +2,7 @@
 //!
 //! Owns the order in which texts are understood. What their types are is in `types`.
 
+use super::tokens::{Fed, fed};
 use crate::program::{Flow, Op, Program};
 use lang_expr::Source;
 use lang_expr::tree::{Id, Node as Part, Tree};
@@ -35,7 +36,7 @@ impl Known {
 struct Givers {
     /// Expressions that are not understood yet.
     waiting: usize,
-    /// Expressions of which nobody can know enough, and blocks *Variable* that get tokens.
+    /// Expressions of which nobody can know enough, and blocks *Variable* that get tokens where expressions give as well.
     unknown: usize,
 }
 
@@ -71,26 +72,32 @@ pub(super) struct Variables {
     /// Variables whose former values each expression reads, and whether it gives them values as well.
     reads: Vec<Vec<(Rc<str>, bool)>>,
     givers: HashMap<Rc<str>, Givers>,
+    /// Variables that nothing but tokens gives values.
+    pub(super) fed: Vec<Fed>,
+    /// What is known of them.
+    pub(super) known_fed: HashMap<Rc<str>, Known>,
     /// Whether texts are looked at that wait for what others give their variables.
     pub(super) is_forced: bool,
 }
 
 impl Variables {
-    /// Those of a program, of whose texts nothing is known yet.
-    pub(super) fn of(program: &Program) -> Self {
+    /// Those of a program, of whose texts nothing is known yet; `unsure`: variables whose type is not taken from tokens.
+    pub(super) fn of(program: &Program, unsure: &HashSet<Rc<str>>) -> Self {
         let mut all = Self {
             known: vec![Known::NotYet; program.formulas.len()],
             gives: Vec::new(),
             reads: Vec::new(),
             givers: HashMap::new(),
+            fed: Vec::new(),
+            known_fed: HashMap::new(),
             is_forced: false,
         };
-        all.find(program);
+        all.find(program, unsure);
         all
     }
 
     /// Finds who reads and who gives variables.
-    fn find(&mut self, program: &Program) {
+    fn find(&mut self, program: &Program, unsure: &HashSet<Rc<str>>) {
         for text in &program.formulas {
             let source = Source::new(&text.text, text.wanted);
             let gives = gives(source.tree());
@@ -107,13 +114,16 @@ impl Variables {
             );
             self.gives.push(gives.into_iter().collect());
         }
+        self.fed = fed(program, |name| self.givers.contains_key(name), unsure);
+        let fed = self.fed.iter();
+        self.known_fed = fed.map(|one| (one.name.clone(), Known::NotYet)).collect();
         for node in &program.nodes {
             if let Op::Flow(Flow::Variable { names, run: None }) = &node.op {
                 for name in names {
-                    self.givers
-                        .entry(name.clone())
-                        .or_default()
-                        .add(Known::Never);
+                    let givers = self.givers.entry(name.clone()).or_default();
+                    if !self.known_fed.contains_key(name) {
+                        givers.add(Known::Never);
+                    }
                 }
             }
         }
@@ -144,9 +154,12 @@ impl Variables {
     pub(super) fn and(&self, index: usize, own: Known, is_settled: impl Fn(&str) -> bool) -> Known {
         let reads = self.reads[index].iter();
         let variables = reads.fold(Known::All, |known, (name, gives)| {
-            known.and(match is_settled(name) {
-                true => Known::All,
-                false => self.variable(name, gives.then_some(index)),
+            known.and(match self.known_fed.get(name) {
+                // Nothing comes there before this text is understood, so nobody can know its type.
+                Some(Known::NotYet) if self.is_forced => Known::Never,
+                Some(&known) => known,
+                None if is_settled(name) => Known::All,
+                None => self.variable(name, gives.then_some(index)),
             })
         });
         match variables {

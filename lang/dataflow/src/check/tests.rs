@@ -1,5 +1,7 @@
 //! What is found before anything runs.
 
+mod variables;
+
 use super::*;
 use crate::machine::fixtures::{diagram, project};
 use crate::project::DiagramKind;
@@ -334,72 +336,6 @@ fn an_error_is_never_lost_among_warnings() {
             .to_string()
             .contains("more than 4 MiB of text")
     );
-}
-
-/// What a function computes is known only after the blocks before it; its texts and those of others that read its
-/// variables wait for that.
-#[test]
-fn variables_are_read_after_what_gives_them_their_type_is_understood() {
-    let inner = diagram(
-        "inner",
-        DiagramKind::Subprogram,
-        "IN Input port\nF Text programming {IO0=e = I0; i = i + e | IO1=u = 2*e + i; u}\nOUT Output port\nIN.OUT > F.I0\nF.O1 > OUT.DATA",
-    );
-    let main = diagram(
-        "main",
-        DiagramKind::Main,
-        "V Variable {variable=i = 0}\nA Sensor\nB Sensor {VarName=sensorA2}\nF Text programming {IO0=I0 - I1}\nC User block of inner\nM Motors\nA.OUT > F.I0\nB.OUT > F.I1\nF.O0 > C.I0\nC.O0 > M.M3",
-    );
-    assert_eq!(told_of(&project(vec![main, inner])), Vec::<String>::new());
-    // Of the items of a list nobody knows what they are.
-    for text in [
-        "L Sensor\nV Text programming {IO0={I0, 1}}\nS Text programming {IO0=x = I0[0]; y = I0[1] | IO1=x + y}\nM Motors\nL.OUT > V.I0\nV.O0 > S.I0\nS.O1 > M.M3",
-        "A Variable {variable=k}\nL Sensor\nF Text programming {IO0=k*I0}\nM Motors\nL.OUT > A.IN\nL.OUT > F.I0\nF.O0 > M.M3",
-    ] {
-        assert_eq!(told(text), Vec::<String>::new(), "{text}");
-    }
-}
-
-#[test]
-fn what_is_wrong_with_known_types_is_still_told() {
-    only(
-        "A Sensor\nF Text programming {IO0=e = I0 | IO1=e + 'a'}\nS Say\nA.OUT > F.I0\nF.O1 > S.DATA",
-        "error: main: Text programming 'F': 'IO1', 1:1 Type mismatch",
-    );
-}
-
-#[test]
-fn texts_that_wait_for_each_other_are_looked_at_all_the_same() {
-    // Both read and give n, and nobody else gives it a value.
-    let both = "A Sensor\nF Text programming {IO0=n = n + I0; {n, n}}\nG Text programming {IO0=n = n - I0}\nM Motors\nA.OUT > F.I0\nA.OUT > G.I0\nF.O0 > M.M3";
-    let found = told(both);
-    assert!(found.iter().any(|one| one.contains("list")), "{found:#?}");
-    let circle = "A Sensor\nF Text programming {IO0=x = y + I0}\nG Text programming {IO0=y = x + 1; 1 + 'a'}\nS Say\nA.OUT > F.I0\nA.OUT > G.I0\nG.O0 > S.DATA";
-    let found = told(circle);
-    assert!(
-        found.iter().any(|one| one.contains("mismatch")),
-        "{found:#?}"
-    );
-}
-
-#[test]
-fn a_chain_of_variables_is_followed_in_whatever_order_it_stands() {
-    let chain = "A Sensor\nF Text programming {IO0=e + 'x' + I0}\nS Say\nE Variable {variable=e = d + 1}\nD Variable {variable=d = c + 1}\nC Variable {variable=c = b + 1}\nB Variable {variable=b = a + 1}\nZ Variable {variable=a = 0}\nA.OUT > F.I0\nF.O0 > S.DATA";
-    let found = told(chain);
-    assert!(
-        found.iter().any(|one| one.contains("mismatch")),
-        "{found:#?}"
-    );
-}
-
-#[test]
-fn many_blocks_that_give_one_variable_cost_what_they_are() {
-    let mut text = String::new();
-    for number in 0..20_000 {
-        text += &format!("V{number} Variable {{variable=x = x + 1}}\n");
-    }
-    // Looking at each giver for each reader would be half a milliard looks in each pass.
-    assert_eq!(told(&text), Vec::<String>::new());
 }
 
 #[test]

@@ -5,6 +5,7 @@
 use super::Found;
 use super::conditions;
 use super::givers::{Known, Variables};
+use super::tokens::{self, input, taken};
 use super::words;
 use crate::blocks::Kind;
 use crate::limits;
@@ -16,6 +17,8 @@ use lang_expr::names::{is_own, own_name};
 use lang_expr::reserved::Shape;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Names, Source, Type, Value, Wanted};
+use std::collections::HashSet;
+use std::rc::Rc;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -177,38 +180,22 @@ pub(super) struct Types {
 
 /// Hands types on until nothing changes, and tells what is wrong with expressions.
 pub(super) fn infer(program: &Program, found: &mut Found) -> Types {
-    let blank = || -> Vec<Vec<Of>> {
-        let nodes = program.nodes.iter();
-        nodes
-            .map(|node| vec![Of::Never; node.row.ports.len()])
-            .collect()
-    };
-    let mut inference = Inference {
-        program,
-        types: Types {
-            outs: blank(),
-            ins: blank(),
-        },
-        names: sensors::names_of(program.kit),
-        texts: program.formulas.iter().map(|_| Of::Any).collect(),
-        variables: Variables::of(program),
-    };
-    for pass in 0..limits::PASSES_MAX {
-        let before = (
-            inference.types.outs.clone(),
-            inference.variables.known.clone(),
-        );
-        inference.learn(None);
-        inference.pass();
-        let is_same = before.0 == inference.types.outs && before.1 == inference.variables.known;
-        if is_same && inference.variables.is_forced {
-            break;
+    let mut unsure = HashSet::new();
+    for _ in 0..limits::GUESSES_MAX {
+        let mut inference = Inference::new(program, &unsure);
+        let is_whole = inference.run();
+        let before = unsure.len();
+        unsure.extend(inference.doubts(is_whole));
+        if unsure.len() == before {
+            return inference.tell(found);
         }
-        // Texts that wait for each other are looked at as they are, once everything else is known.
-        inference.variables.is_forced |= pass > 0 && is_same || pass + 2 >= limits::PASSES_MAX;
     }
-    inference.learn(Some(found));
-    inference.types
+    // So many guesses were wrong that none is made.
+    let every = Inference::new(program, &HashSet::new()).variables.fed;
+    let unsure = every.into_iter().map(|one| one.name).collect();
+    let mut inference = Inference::new(program, &unsure);
+    inference.run();
+    inference.tell(found)
 }
 
 struct Inference<'a> {
@@ -228,7 +215,91 @@ fn assigns_last(source: &Source) -> bool {
     last.is_some_and(|last| matches!(tree.node(last), Part::Assign { .. }))
 }
 
-impl Inference<'_> {
+impl<'a> Inference<'a> {
+    /// That of a program of which nothing is known; `unsure`: variables whose type is not taken from tokens.
+    fn new(program: &'a Program, unsure: &HashSet<Rc<str>>) -> Self {
+        let blank = || -> Vec<Vec<Of>> {
+            let nodes = program.nodes.iter();
+            nodes
+                .map(|node| vec![Of::Never; node.row.ports.len()])
+                .collect()
+        };
+        Self {
+            program,
+            types: Types {
+                outs: blank(),
+                ins: blank(),
+            },
+            names: sensors::names_of(program.kit),
+            texts: program.formulas.iter().map(|_| Of::Any).collect(),
+            variables: Variables::of(program, unsure),
+        }
+    }
+
+    /// Hands types on until nothing changes; whether that came within the passes there are.
+    fn run(&mut self) -> bool {
+        for pass in 0..limits::PASSES_MAX {
+            let before = (self.types.outs.clone(), self.variables.known.clone());
+            self.feed();
+            self.learn(None);
+            self.pass();
+            let is_same = before.0 == self.types.outs && before.1 == self.variables.known;
+            if is_same && self.variables.is_forced {
+                return true;
+            }
+            // Texts that wait for each other are looked at as they are, once everything else is known.
+            self.variables.is_forced |= pass > 0 && is_same || pass + 2 >= limits::PASSES_MAX;
+        }
+        false
+    }
+
+    /// Gives variables that get tokens the types of these, as far as they are known.
+    fn feed(&mut self) {
+        for fed in &mut self.variables.fed {
+            let mut of = Of::Never;
+            for &(node, item) in &fed.by {
+                let port = input(self.program.node(node).row).map_or(0, usize::from);
+                of = of.join(taken(self.types.ins[node as usize][port], item));
+            }
+            let known = match (of.example(), of) {
+                (Some(example), _) => match self.names.slot(&fed.name) {
+                    Some(slot) => {
+                        fed.is_typed = true;
+                        self.names.retype(slot, &example);
+                        Known::All
+                    }
+                    None => Known::Never,
+                },
+                (None, Of::Never) => Known::NotYet,
+                (None, _) => Known::Never,
+            };
+            self.variables.known_fed.insert(fed.name.clone(), known);
+        }
+    }
+
+    /// Variables that were given a type of tokens which turned out to be only some of those that come; `is_whole`: whether
+    /// all of them are known.
+    fn doubts(&mut self, is_whole: bool) -> Vec<Rc<str>> {
+        self.feed();
+        let known = &self.variables.known_fed;
+        let typed = self.variables.fed.iter().filter(|one| one.is_typed);
+        let doubtful = typed.filter(|one| !is_whole || known.get(&one.name) != Some(&Known::All));
+        doubtful.map(|one| one.name.clone()).collect()
+    }
+
+    /// Tells what is wrong with expressions and variables.
+    fn tell(mut self, found: &mut Found) -> Types {
+        self.learn(Some(found));
+        let known = &self.variables.known_fed;
+        let of_variable = |name: &str| {
+            let slot = self.names.find(name).filter(|_| !known.contains_key(name));
+            let of = slot.map(|slot| Of::of_type(self.names.type_of(slot)));
+            of.unwrap_or(Of::Any)
+        };
+        tokens::tell(self.program, &self.types.outs, of_variable, found);
+        self.types
+    }
+
     /// Looks at each expression with what is known of its names.
     fn learn(&mut self, mut found: Option<&mut Found>) {
         for index in 0..self.program.formulas.len() {

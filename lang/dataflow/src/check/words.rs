@@ -31,6 +31,40 @@ pub(crate) fn does_not_fit(comes: [&str; 2], wanted: [&str; 2], count: Option<u8
     )
 }
 
+pub(crate) fn no_list_for(comes: [&str; 2], count: usize) -> Words {
+    Words::new(
+        format!(
+            "{} comes here, but its {count} variables take the items of a list: connect one, or name one variable",
+            comes[0]
+        ),
+        format!(
+            "сюда приходит {}, а переменных {count}, и они берут элементы списка: присоедините список или назовите одну переменную",
+            comes[1]
+        ),
+    )
+}
+
+pub(crate) fn short_list(has: u16, count: usize) -> Words {
+    Words::new(
+        format!("a list of {has} comes here, but it has {count} variables: each takes an item"),
+        format!("сюда приходит список из {has}, а переменных {count}: каждая берёт по элементу"),
+    )
+}
+
+pub(crate) fn other_kind(name: &str, comes: [&str; 2], is: [&str; 2]) -> Words {
+    let name = short(name);
+    Words::new(
+        format!(
+            "{} comes here, but `{name}` gets {} elsewhere, and a variable keeps its kind: take another variable",
+            comes[0], is[0]
+        ),
+        format!(
+            "сюда приходит {}, а в другом месте `{name}` получает {}, и вид переменной не меняется: возьмите другую",
+            comes[1], is[1]
+        ),
+    )
+}
+
 pub(crate) fn unit_here(port: &str) -> Words {
     Words::new(
         format!("a control token comes to {port}, which has no value: connect a data output"),
