@@ -308,7 +308,7 @@ pub fn program(bytes: &[u8]) -> bool {
         assert_eq!(text::write(again), text::write(&project));
     }
     for locale in [Locale::English, Locale::Russian] {
-        show::sentences(&project, locale);
+        show::sentences(&project, show::Extent::default(), locale);
     }
     if checked.has_errors() {
         return false;

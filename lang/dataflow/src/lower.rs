@@ -4,6 +4,7 @@
 //! periods and cycles show. Knows no time.
 
 mod properties;
+mod unused;
 
 use properties::port_of_call;
 pub(crate) use properties::{DATA, INPUTS, chosen, color};
@@ -40,20 +41,7 @@ impl Lowered {
 
 /// Makes a project ready to run.
 pub fn lower(project: &Project) -> Lowered {
-    let kit = project.meta.get("lastKitId");
-    let mut lowering = Lowering {
-        project,
-        program: Program {
-            kit: kit.and_then(|id| Kit::of_id(id)).unwrap_or_default(),
-            ..Program::default()
-        },
-        problems: Vec::new(),
-        has_failed: false,
-        edges: 0,
-        bytes: 0,
-        chains: Vec::new(),
-        called: called(project),
-    };
+    let mut lowering = Lowering::new(project);
     lowering.run();
     let Lowering {
         program,
@@ -61,20 +49,15 @@ pub fn lower(project: &Project) -> Lowered {
         has_failed,
         ..
     } = lowering;
-    Lowered {
+    let mut lowered = Lowered {
         program,
         problems,
         has_failed,
+    };
+    if !lowered.has_failed {
+        unused::look(project, &mut lowered);
     }
-}
-
-/// Diagrams by their logical ids: the first one of each, as the editor has it.
-fn called(project: &Project) -> HashMap<&str, usize> {
-    let mut called = HashMap::new();
-    for (at, diagram) in project.diagrams.iter().enumerate() {
-        called.entry(diagram.logical.as_str()).or_insert(at);
-    }
-    called
+    lowered
 }
 
 struct Lowering<'a> {
@@ -117,6 +100,23 @@ fn place(diagram: &Diagram, block: &Block) -> Place {
 }
 
 impl<'a> Lowering<'a> {
+    fn new(project: &'a Project) -> Self {
+        let kit = project.meta.get("lastKitId");
+        Self {
+            project,
+            program: Program {
+                kit: kit.and_then(|id| Kit::of_id(id)).unwrap_or_default(),
+                ..Program::default()
+            },
+            problems: Vec::new(),
+            has_failed: false,
+            edges: 0,
+            bytes: 0,
+            chains: Vec::new(),
+            called: project.by_logical(),
+        }
+    }
+
     fn run(&mut self) {
         let Some(main) = self.project.main else {
             self.error(Place::default(), words::no_main());

@@ -3,7 +3,7 @@
 //! Owns plain data and look-ups. Knows neither the save's format nor what a block does.
 
 use crate::blocks::Row;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// A whole project.
 #[derive(Clone, Debug, Default)]
@@ -127,6 +127,36 @@ impl Project {
     pub fn called(&self, logical: &str) -> Option<usize> {
         let mut all = self.diagrams.iter();
         all.position(|diagram| diagram.logical == logical)
+    }
+
+    /// Diagrams by their logical ids: the first one of each, as the editor has it.
+    pub(crate) fn by_logical(&self) -> HashMap<&str, usize> {
+        let mut all = HashMap::new();
+        for (at, diagram) in self.diagrams.iter().enumerate() {
+            all.entry(diagram.logical.as_str()).or_insert(at);
+        }
+        all
+    }
+
+    /// Which diagrams are run if this one is: itself, those that it calls, and so on.
+    pub(crate) fn reached(&self, from: usize) -> Vec<bool> {
+        let all = self.by_logical();
+        let mut reached = vec![false; self.diagrams.len()];
+        let mut waiting = vec![from];
+        while let Some(at) = waiting.pop() {
+            let Some(diagram) = self.diagrams.get(at) else {
+                continue;
+            };
+            if std::mem::replace(&mut reached[at], true) {
+                continue;
+            }
+            let calls = diagram
+                .blocks
+                .iter()
+                .filter_map(|block| block.calls.as_deref());
+            waiting.extend(calls.filter_map(|id| all.get(id)));
+        }
+        reached
     }
 }
 

@@ -10,7 +10,7 @@ mod words;
 mod tests;
 
 pub use picture::picture;
-pub use sentences::{Line, full_sentences, lines, sentences};
+pub use sentences::{Extent, Line, lines, sentences};
 
 use crate::blocks::{Content, Property};
 use crate::project::{Block, Diagram};

@@ -130,6 +130,13 @@ pub(crate) fn port_in_main() -> Words {
     )
 }
 
+pub(crate) fn never_called() -> Words {
+    Words::new(
+        "nothing that runs calls it, so nothing of it happens: put a 'User block' where it is needed, or delete it",
+        "ничто из того, что выполняется, её не вызывает: поставьте вызов там, где она нужна, или удалите её",
+    )
+}
+
 pub(crate) fn calls_main() -> Words {
     Words::new(
         "it calls a main diagram; only subprograms can be called",

@@ -11,6 +11,7 @@ use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal};
 use crate::terminal::harmless;
 use clap::Args;
+use lang_dataflow::show::Extent;
 use lang_diagram::show::{outline::outline, picture::picture};
 use lang_text::problem::Locale;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ pub(crate) struct ShowArgs {
     #[arg(long, conflicts_with_all = ["svg", "source"])]
     pub all: bool,
     /// The diagram with this name in the file [default: the main one]. Sentences are those of the diagram and of the
-    /// subprograms that it calls.
+    /// subprograms that it calls; without this option, those of a data-flow program are of all its diagrams.
     #[arg(long, value_name = "NAME")]
     pub diagram: Option<String>,
     /// Overwrite OUT.svg if it exists.
@@ -96,10 +97,11 @@ fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
         let picture = lang_dataflow::show::picture(&project, chosen, args.language);
         return write_picture(args, svg, &picture);
     }
-    let said = match args.all {
-        true => lang_dataflow::show::full_sentences(&project, args.language),
-        false => lang_dataflow::show::sentences(&project, args.language),
+    let extent = Extent {
+        with_defaults: args.all,
+        from: args.diagram.is_some().then_some(chosen),
     };
+    let said = lang_dataflow::show::sentences(&project, extent, args.language);
     standard(said.as_bytes())?;
     Ok(0)
 }

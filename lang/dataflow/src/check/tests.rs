@@ -339,6 +339,37 @@ fn an_error_is_never_lost_among_warnings() {
 }
 
 #[test]
+fn diagrams_that_are_not_run_are_looked_at_and_forbid_nothing() {
+    let main = diagram("main", DiagramKind::Main, "S Say");
+    let lonely = diagram(
+        "lonely",
+        DiagramKind::Subprogram,
+        "L Led {ledColor=pink}\nF Text programming {IO0=1 +}\nC User block of deep",
+    );
+    let deep = diagram(
+        "deep",
+        DiagramKind::Subprogram,
+        "W Wait and send {time=soon}",
+    );
+    let other = diagram("other", DiagramKind::Main, "L Led {ledColor=blue}");
+    let project = project(vec![main, lonely, deep, other]);
+    let found = told_of(&project);
+    let wanted = [
+        "warning: lonely: nothing that runs calls it",
+        "warning: lonely: Led 'L': 'color:': 'pink'",
+        "warning: lonely: Text programming 'F': 'IO0', 1:",
+        "warning: deep: nothing that runs calls it",
+        "warning: deep: Wait and send 'W': 'time': 'soon' is not a number",
+        "warning: other: Led 'L': 'color:': 'blue'",
+    ];
+    assert_eq!(found.len(), wanted.len(), "{found:#?}");
+    for (found, wanted) in found.iter().zip(wanted) {
+        assert!(found.starts_with(wanted), "{wanted}\n{found}");
+    }
+    assert!(!check(&project).has_errors());
+}
+
+#[test]
 fn times_that_are_none_are_told() {
     for (time, words) in [("0", "0 ms"), ("-5", "-5 ms")] {
         only(

@@ -10,13 +10,17 @@ use lang_text::problem::Locale;
 
 /// The program in words for pupils: diagrams, and in each its blocks in the order of the diagram. A line below a block is
 /// an edge that begins there.
-pub fn sentences(project: &Project, locale: Locale) -> String {
-    text_of(lines(project, locale))
+pub fn sentences(project: &Project, extent: Extent, locale: Locale) -> String {
+    text_of(written(project, extent, locale))
 }
 
-/// The same with all properties that are not empty, also those that have their defaults.
-pub fn full_sentences(project: &Project, locale: Locale) -> String {
-    text_of(written(project, locale, true))
+/// How much of a program is said.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extent {
+    /// Also properties that have their defaults.
+    pub with_defaults: bool,
+    /// This diagram alone, with the subprograms that it calls, instead of all diagrams.
+    pub from: Option<usize>,
 }
 
 fn text_of(lines: Vec<Line>) -> String {
@@ -37,18 +41,26 @@ pub struct Line {
 
 /// The sentences line by line.
 pub fn lines(project: &Project, locale: Locale) -> Vec<Line> {
-    written(project, locale, false)
+    written(project, Extent::default(), locale)
 }
 
-fn written(project: &Project, locale: Locale, with_defaults: bool) -> Vec<Line> {
+fn written(project: &Project, extent: Extent, locale: Locale) -> Vec<Line> {
+    let count = project.diagrams.len();
     let mut writer = Writer {
         project,
         locale,
-        with_defaults,
+        with_defaults: extent.with_defaults,
+        run: match project.main {
+            Some(main) => project.reached(main),
+            None => vec![false; count],
+        },
         out: Vec::new(),
     };
-    for at in 0..project.diagrams.len() {
-        writer.diagram(at);
+    let wanted = extent.from.map(|from| project.reached(from));
+    for at in 0..count {
+        if wanted.as_ref().is_none_or(|wanted| wanted[at]) {
+            writer.diagram(at);
+        }
     }
     writer.out
 }
@@ -58,6 +70,8 @@ struct Writer<'a> {
     locale: Locale,
     /// Whether properties are said that have their defaults.
     with_defaults: bool,
+    /// Which diagrams are run.
+    run: Vec<bool>,
     out: Vec<Line>,
 }
 
@@ -78,14 +92,14 @@ impl Writer<'_> {
         if !self.out.is_empty() {
             self.out.push(Line::default());
         }
-        let word = match diagram.kind {
-            DiagramKind::Main => Word::Program,
-            DiagramKind::Subprogram => Word::Subprogram,
+        let (word, idle) = match diagram.kind {
+            DiagramKind::Main => (Word::Program, Word::NotRun),
+            DiagramKind::Subprogram => (Word::Subprogram, Word::NotCalled),
         };
         let name = shortened(&diagram.name, SENTENCE_PROPERTY_MAX);
         let mut head = format!("{} \"{name}\"", self.word(word));
-        if diagram.kind == DiagramKind::Main && self.project.main != Some(at) {
-            head += &format!(" ({})", self.word(Word::NotRun));
+        if !self.run[at] {
+            head += &format!(" ({})", self.word(idle));
         }
         self.line(0, &format!("{head}:"));
         let names = callings(diagram, self.locale);

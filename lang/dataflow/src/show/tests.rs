@@ -1,6 +1,6 @@
 //! Sentences and pictures of small projects, with friendly and hostile texts.
 
-use super::{full_sentences, picture, sentences};
+use super::{Extent, picture};
 use crate::blocks;
 use crate::project::{Edge, End, Project};
 use crate::text;
@@ -8,6 +8,10 @@ use lang_text::problem::Locale;
 
 fn project(source: &str) -> Project {
     text::read(source).unwrap_or_else(|problems| panic!("{problems:?}"))
+}
+
+fn sentences(project: &Project, locale: Locale) -> String {
+    super::sentences(project, Extent::default(), locale)
 }
 
 /// A program in which there is one of all.
@@ -59,8 +63,12 @@ fn properties_that_have_their_defaults_are_said_if_they_are_asked_for() {
     let project = project(
         "diagram a\n W: \"Wait and send\"\n M: Motors(M3Power = 7)\n F: \"Text programming\"(IO0 = 1)\n",
     );
+    let full = Extent {
+        with_defaults: true,
+        from: None,
+    };
     assert_eq!(
-        full_sentences(&project, Locale::English),
+        super::sentences(&project, full, Locale::English),
         "Program \"a\":\n  W - Wait and send: time = 300, keep = no\n  \
          M - Motors: synchronized = no, M1 = 0, M2 = 0, M3 = 7, M4 = 50\n  \
          F - Text programming: synchronized = yes, IO0 = 1\n"
@@ -68,6 +76,33 @@ fn properties_that_have_their_defaults_are_said_if_they_are_asked_for() {
     let said = sentences(&project, Locale::English);
     assert!(said.contains("  W - Wait and send\n"), "{said}");
     assert!(said.contains("  M - Motors: M3 = 7\n"), "{said}");
+}
+
+#[test]
+fn diagrams_that_are_not_run_are_said_too_and_one_can_be_asked_for() {
+    let project = project(
+        "diagram main\n C: \"User block\" of used\n\nsubprogram used\n S: Say\n\n\
+         subprogram lonely\n D: \"User block\" of deep\n\nsubprogram deep\n W: \"Wait and send\"(time = 7)\n",
+    );
+    let said = sentences(&project, Locale::English);
+    let heads: Vec<&str> = said.lines().filter(|line| line.ends_with(':')).collect();
+    let wanted = [
+        "Program \"main\":",
+        "Subprogram \"used\":",
+        "Subprogram \"lonely\" (not called):",
+        "Subprogram \"deep\" (not called):",
+    ];
+    assert_eq!(heads, wanted, "{said}");
+    assert!(said.contains("  W - Wait and send: time = 7\n"), "{said}");
+    let extent = Extent {
+        with_defaults: true,
+        from: Some(2),
+    };
+    assert_eq!(
+        super::sentences(&project, extent, Locale::English),
+        "Subprogram \"lonely\" (not called):\n  D - User block: runs \"deep\"\n\n\
+         Subprogram \"deep\" (not called):\n  W - Wait and send: time = 7, keep = no\n"
+    );
 }
 
 #[test]

@@ -11,6 +11,8 @@ pub(super) enum Word {
     Subprogram,
     /// A main diagram that is not run.
     NotRun,
+    /// A subprogram that is never called.
+    NotCalled,
     /// A block that no row knows.
     Unknown,
     /// What a call runs.
@@ -44,6 +46,7 @@ impl Word {
             Self::Program => ("Program", "Программа"),
             Self::Subprogram => ("Subprogram", "Подпрограмма"),
             Self::NotRun => ("not run", "не выполняется"),
+            Self::NotCalled => ("not called", "не вызывается"),
             Self::Unknown => ("unknown block", "неизвестный блок"),
             Self::Runs => ("runs", "выполняет"),
             Self::NotThere => (
