@@ -4,6 +4,7 @@
 
 mod picture;
 mod sentences;
+mod ways;
 mod words;
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! A diagram as a picture: SVG that needs nothing else.
 //!
-//! Owns colours, ways of edges and where texts stand. Sizes of blocks and places of ports are in their rows. All texts of
+//! Owns colours, ends of edges and where texts stand. Sizes of blocks and places of ports are in their rows. All texts of
 //! the project are escaped; numbers that are none or far away are left out.
 
+use super::ways::{Obstacle, Stop, Ways};
 use super::{changed, kind, shortened};
 use crate::blocks::{Direction, Does, Kind, Port, Row};
 use crate::limits::{PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX, PICTURE_PROPERTY_MAX};
@@ -39,10 +40,7 @@ pub fn picture(project: &Project, diagram: usize, locale: Locale) -> String {
         .iter()
         .map(|block| Frame::of(block, project, locale))
         .collect();
-    let edges = diagram.edges.iter().take(2 * PICTURE_BLOCKS_MAX);
-    let ways: Vec<(&Edge, Vec<(f64, f64)>)> = edges
-        .filter_map(|edge| Some((edge, corners(edge, blocks)?)))
-        .collect();
+    let ways = ways(&diagram.edges, blocks, &boxes);
     let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
     let all_boxes = boxes.iter().flat_map(Frame::corners);
     let all = all_boxes.chain(ways.iter().flat_map(|(_, way)| way.iter().copied()));
@@ -157,6 +155,36 @@ fn corners(edge: &Edge, blocks: &[Block]) -> Option<Vec<(f64, f64)>> {
     Some(all)
 }
 
+/// The edges that are drawn with their ways, which run around blocks.
+fn ways<'a>(
+    edges: &'a [Edge],
+    blocks: &[Block],
+    boxes: &[Frame],
+) -> Vec<(&'a Edge, Vec<(f64, f64)>)> {
+    let mut ways = Ways::new(boxes.iter().map(Frame::obstacle).collect());
+    let mut all = Vec::new();
+    for edge in edges.iter().take(2 * PICTURE_BLOCKS_MAX) {
+        let Some(drawn) = corners(edge, blocks) else {
+            continue;
+        };
+        let (Some(&first), Some(&last)) = (drawn.first(), drawn.last()) else {
+            continue;
+        };
+        let stop = |end: Option<End>, at| {
+            let block = end.filter(|end| end.block < blocks.len());
+            Stop {
+                at,
+                block: block.map(|end| end.block),
+                is_port: block.is_some_and(|end| port_of(&blocks[end.block], end.port).is_some()),
+            }
+        };
+        let ends = [stop(edge.from, first), stop(edge.to, last)];
+        let from = edge.from.map(|from| (from.block, from.port));
+        all.push((edge, ways.way(drawn, ends, from)));
+    }
+    all
+}
+
 fn draw_edge(edge: &Edge, way: &[(f64, f64)], blocks: &[Block], svg: &mut Svg) {
     let kind = |end: Option<End>| {
         let end = end?;
@@ -194,7 +222,13 @@ fn draw_edge(edge: &Edge, way: &[(f64, f64)], blocks: &[Block], svg: &mut Svg) {
         }
     }
     let said = queue(edge);
-    if let [first, second, ..] = way
+    let long = |line: &&[(f64, f64)]| (line[1].0 - line[0].0).hypot(line[1].1 - line[0].1);
+    // Of equally long parts the first one.
+    let longest = way
+        .windows(2)
+        .rev()
+        .max_by(|one, other| long(one).total_cmp(&long(other)));
+    if let Some([first, second]) = longest
         && !said.is_empty()
     {
         let (x, y) = (
@@ -273,14 +307,28 @@ impl Frame {
         }
     }
 
+    /// How far its words reach below it.
+    fn below(&self) -> f64 {
+        LINE * (self.lines.len() as f64 + 0.5)
+    }
+
     /// The corners of what it takes.
     fn corners(&self) -> [(f64, f64); 2] {
         let (x, y) = self.at;
-        let below = LINE * (self.lines.len() as f64 + 0.5);
         [
             (x - OUT, y),
-            (x + self.size.0 + OUT, y + self.size.1 + below),
+            (x + self.size.0 + OUT, y + self.size.1 + self.below()),
         ]
+    }
+
+    /// What of it is in the way of edges.
+    fn obstacle(&self) -> Obstacle {
+        let (x, y) = self.at;
+        Obstacle {
+            low: self.at,
+            high: (x + self.size.0, y + self.size.1),
+            words: self.below(),
+        }
     }
 }
 

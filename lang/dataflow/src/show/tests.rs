@@ -177,6 +177,83 @@ fn edges_go_from_port_to_port_by_their_inner_corners() {
     );
 }
 
+/// Edges of the first diagram whose way runs through a block that is not theirs, by their ids.
+fn crossing(project: &Project) -> Vec<String> {
+    let svg = picture(project, 0, Locale::English);
+    let diagram = &project.diagrams[0];
+    let ways: Vec<Vec<(f64, f64)>> = svg
+        .split("<polyline")
+        .skip(1)
+        .map(|one| points(one.split("/>").next().unwrap_or_default()))
+        .collect();
+    assert_eq!(ways.len(), diagram.edges.len());
+    let crosses = |(edge, way): &(&Edge, Vec<(f64, f64)>)| {
+        let own = [edge.from, edge.to].map(|end| end.map(|end| end.block));
+        let others = (0..diagram.blocks.len()).filter(|at| !own.contains(&Some(*at)));
+        others.map(|at| &diagram.blocks[at]).any(|block| {
+            let (x, y) = block.position;
+            let (width, height) = block.row.map_or((100, 100), |row| row.size);
+            let area = [(x, y), (x + f64::from(width), y + f64::from(height))];
+            way.windows(2)
+                .any(|line| super::ways::meets(line[0], line[1], area))
+        })
+    };
+    let all = diagram.edges.iter().zip(ways);
+    all.filter(crosses)
+        .map(|(edge, _)| edge.id.clone())
+        .collect()
+}
+
+#[test]
+fn edges_run_around_blocks_that_are_not_theirs() {
+    // Straight, it would run through B; and its own block lies on the way of an edge that leads back.
+    let row = "diagram a\n A: Say at 0, 0\n B: Say at 200, 0\n C: Say at 400, 0\n A.CF_OUT -> C.CF_IN\n C.CF_OUT -> A.CF_IN\n";
+    let way = points(&picture(&project(row), 0, Locale::English));
+    assert!(way.len() > 8, "{way:?}");
+    assert_eq!(crossing(&project(row)), Vec::<String>::new());
+    assert_eq!(
+        picture(&project(row), 0, Locale::English),
+        picture(&project(row), 0, Locale::English)
+    );
+    let mut random = needs::Random::new(7);
+    for _ in 0..20 {
+        use std::fmt::Write as _;
+        let count = 4 + random.below(30);
+        let mut source = "diagram a\n".to_owned();
+        for at in 0..count {
+            let _ = writeln!(source, "b{at}: Motors");
+        }
+        for _ in 0..2 * count {
+            let (from, to) = (random.below(count), random.below(count));
+            let _ = writeln!(source, "b{from}.CF_OUT -> b{to}.M{}", 1 + random.below(4));
+        }
+        assert_eq!(
+            crossing(&project(&source)),
+            Vec::<String>::new(),
+            "{source}"
+        );
+    }
+}
+
+#[test]
+fn a_large_picture_looks_only_so_far_for_ways() {
+    use std::fmt::Write as _;
+    let mut random = needs::Random::new(8);
+    let count = crate::limits::PICTURE_BLOCKS_MAX / 4;
+    let mut source = "diagram a\n".to_owned();
+    for at in 0..count {
+        // Some lie upon others.
+        let (x, y) = (random.below(5000), random.below(5000));
+        let _ = writeln!(source, "b{at}: Motors at {x}, {y}");
+    }
+    for _ in 0..2 * count {
+        let (from, to) = (random.below(count), random.below(count));
+        let _ = writeln!(source, "b{from}.CF_OUT -> b{to}.M1");
+    }
+    let svg = picture(&project(&source), 0, Locale::English);
+    assert_eq!(svg.matches("<polyline").count(), 2 * count);
+}
+
 #[test]
 fn places_that_are_none_are_drawn_somewhere() {
     let mut project = project(SMALL);
