@@ -37,12 +37,15 @@ mod labels;
 mod layout;
 mod lexer;
 mod parser;
+mod places;
 mod resolve;
 mod words;
 mod writer;
 
 #[cfg(test)]
 mod tests;
+
+pub use places::Places;
 
 use crate::project::Project;
 use lang_text::problem::{Problem, locate};

@@ -30,6 +30,7 @@ pub(super) struct IdsDraft {
 
 #[derive(Debug)]
 pub(super) struct DiagramDraft<'a> {
+    pub at: usize,
     pub kind: DiagramKind,
     pub name: String,
     pub ids: IdsDraft,
@@ -55,6 +56,8 @@ pub(super) struct BlockDraft<'a> {
     pub row: Option<&'static Row>,
     pub element: String,
     pub properties: BTreeMap<String, String>,
+    /// Where the values of the properties begin.
+    pub values: Vec<(String, usize)>,
     pub caption: Option<String>,
     pub position: Option<(f64, f64)>,
     pub called: Option<Called>,

@@ -244,6 +244,7 @@ impl<'a> Parser<'a> {
         }
         // What follows belongs to it, whatever is wrong with its line.
         self.draft.diagrams.push(DiagramDraft {
+            at,
             kind,
             name: String::new(),
             ids: IdsDraft::default(),
@@ -306,6 +307,7 @@ impl<'a> Parser<'a> {
             row,
             element,
             properties: Default::default(),
+            values: Vec::new(),
             caption: None,
             position: None,
             called: None,
@@ -388,11 +390,13 @@ impl<'a> Parser<'a> {
             self.skip_lines();
             self.sign(Sign::Equals)?;
             self.skip_lines();
+            let value_at = self.offset();
             let value = self.value()?;
             if block.properties.contains_key(&name) {
                 return Err(error_at(at, words::property_twice(&name)));
             }
             self.count_property(at)?;
+            block.values.push((name.clone(), value_at));
             block.properties.insert(name, value);
             self.skip_lines();
             if self.sign_at(0, Sign::Comma) {

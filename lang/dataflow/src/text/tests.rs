@@ -1,6 +1,7 @@
 //! Programs as text: examples, what is said of mistakes, and what is lost (nothing).
 
 mod mistakes;
+mod places;
 mod round;
 
 use super::{read, write};
