@@ -154,9 +154,9 @@ fn at(id: &str, words: Words) -> Problem {
     problem
 }
 
-/// Whether an object is a link.
-fn is_link(object: &Object) -> bool {
-    object.element() == "ControlFlow"
+/// Whether an object is a link, of either language.
+pub(crate) fn is_link(object: &Object) -> bool {
+    ["ControlFlow", "Edge"].contains(&object.element())
 }
 
 #[cfg(test)]

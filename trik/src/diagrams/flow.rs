@@ -21,6 +21,8 @@ pub(crate) struct Flow {
     pub project: Project,
     /// What is strange but does not keep it from being read.
     pub problems: Vec<Problem>,
+    /// Its text, if it is not of a save.
+    pub text: Option<String>,
 }
 
 /// What a file has.
@@ -58,6 +60,7 @@ pub(crate) fn of_text(bytes: Vec<u8>) -> Result<Flow, Unreadable> {
     Ok(Flow {
         project,
         problems: Vec::new(),
+        text: Some(text),
     })
 }
 
@@ -65,14 +68,21 @@ pub(crate) fn of_text(bytes: Vec<u8>) -> Result<Flow, Unreadable> {
 pub(crate) fn of_save(opened: Opened) -> Program {
     match language(&opened.save) {
         Language::Diagram => Program::Diagram(Box::new(opened)),
-        Language::Dataflow => {
-            let (project, problems) = project(&opened.save);
-            Program::Flow(Flow { project, problems }, Box::new(opened))
-        }
+        Language::Dataflow => Program::Flow(Flow::of_save(&opened), Box::new(opened)),
     }
 }
 
 impl Flow {
+    /// That of a save.
+    pub(super) fn of_save(opened: &Opened) -> Self {
+        let (project, problems) = project(&opened.save);
+        Self {
+            project,
+            problems,
+            text: None,
+        }
+    }
+
     /// Everything that is wrong with it.
     pub(crate) fn found(&self) -> Vec<Problem> {
         let mut problems = self.problems.clone();

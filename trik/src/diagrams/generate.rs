@@ -127,7 +127,8 @@ fn converter(args: &GenArgs, flow: &Flow, output: &Output<'_>) -> Result<u8, Ref
     let program = flow.ready();
     let written = program.and_then(|program| lang_dataflow::generate::generate(&program, target));
     let text = written.map_err(|problems| {
-        let mut lines = Reporter::new(&args.file, None, args.language).lines(&problems);
+        let reporter = Reporter::of_flow(&args.file, flow, args.language);
+        let mut lines = reporter.lines(&problems);
         lines.push("trik: no program was written".to_owned());
         Refusal {
             lines,

@@ -63,15 +63,14 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                 report(&reporter, world(&text), &mut count, args)?;
                 continue;
             }
-            Ok(Content::Flow(flow, save)) => {
-                refuse_recovery(args, file, "a data-flow program")?;
-                let reporter = Reporter::new(file, None, args.language);
-                let mut problems = save
-                    .as_ref()
-                    .map_or_else(Vec::new, |save| save.problems.clone());
-                problems.extend(flow.found());
-                problems.extend(save.map_or_else(Vec::new, |save| world_of(&save.project)));
-                report(&reporter, problems, &mut count, args)?;
+            Ok(Content::Flow(flow, None)) => {
+                refuse_recovery(args, file, "a text")?;
+                let reporter = Reporter::of_flow(file, &flow, args.language);
+                report(&reporter, flow.found(), &mut count, args)?;
+                continue;
+            }
+            Ok(Content::Flow(flow, Some(save))) => {
+                lint_save(flow, *save, file, &mut count, args)?;
                 continue;
             }
             Err(why) => {
@@ -80,21 +79,15 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                     Unreadable::File(words) => vec![Problem::error(words)],
                     Unreadable::Save(problems) => problems,
                 };
-                let reporter = Reporter::new(file, None, args.language);
+                let reporter = match flow::is_text(file) {
+                    true => Reporter::of_unread_text(file, args.language),
+                    false => Reporter::new(file, None, args.language),
+                };
                 report(&reporter, problems, &mut count, args)?;
                 continue;
             }
         };
-        let name = match &args.recover {
-            None => file,
-            Some(out) => {
-                if recover(&mut opened, file, out, args)? {
-                    out
-                } else {
-                    file
-                }
-            }
-        };
+        let name = recovered(&mut opened, file, args)?;
         let reporter = Reporter::new(name, Some(&opened.project), args.language);
         report(&reporter, found(&opened), &mut count, args)?;
     }
@@ -107,6 +100,41 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
         (0, _) => REFUSED,
         _ => UNREADABLE,
     })
+}
+
+/// Finds and tells everything about a save with a data-flow program.
+fn lint_save(
+    mut flow: Flow,
+    mut opened: Opened,
+    file: &Path,
+    count: &mut Count,
+    args: &LintArgs,
+) -> Result<(), Refusal> {
+    let name = recovered(&mut opened, file, args)?;
+    if name != file {
+        flow = Flow::of_save(&opened);
+    }
+    let mut problems = opened.problems.clone();
+    problems.extend(flow.found());
+    problems.extend(world_of(&opened.project));
+    report(
+        &Reporter::new(name, None, args.language),
+        problems,
+        count,
+        args,
+    )
+}
+
+/// Puts back what was lost, if that is asked for; which file has all of it.
+fn recovered<'a>(
+    opened: &mut Opened,
+    file: &'a Path,
+    args: &'a LintArgs,
+) -> Result<&'a Path, Refusal> {
+    match &args.recover {
+        Some(out) if recover(opened, file, out, args)? => Ok(out),
+        Some(_) | None => Ok(file),
+    }
 }
 
 /// Only diagrams lose blocks that can be put back.

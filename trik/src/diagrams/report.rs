@@ -1,13 +1,15 @@
-//! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words; and as lines
-//! of JSON.
+//! Problems of a diagram as lines for a person: file, in a text its line and column, how bad, diagram, block with its place,
+//! property, words; and as lines of JSON.
 //!
 //! Owns the order of problems and both forms of a line.
 
+use super::flow::Flow;
 use super::words;
 use crate::terminal::{harmless, named};
+use lang_dataflow::text::Places;
 use lang_diagram::blocks;
 use lang_diagram::project::{Block, Project};
-use lang_text::problem::{Locale, Problem, Severity};
+use lang_text::problem::{Locale, Position, Problem, Severity};
 use serde_json::json;
 use std::cmp::Reverse;
 use std::collections::HashMap;
@@ -34,9 +36,20 @@ impl Count {
     }
 }
 
+/// What lines and columns of a file are known.
+enum Lines<'a> {
+    /// None: a save is an archive.
+    None,
+    /// Those that problems have: nobody could read the text.
+    OfProblems,
+    /// Those of the objects in a text.
+    OfObjects(Places<'a>),
+}
+
 /// Problems of one save as lines.
 pub(super) struct Reporter<'a> {
     file: String,
+    lines: Lines<'a>,
     blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
     locale: Locale,
 }
@@ -55,8 +68,37 @@ impl<'a> Reporter<'a> {
         }
         Self {
             file: named(file),
+            lines: Lines::None,
             blocks,
             locale,
+        }
+    }
+
+    /// For a text that could not be read: an editor can go to the places of its problems.
+    pub fn of_unread_text(file: &Path, locale: Locale) -> Self {
+        Self {
+            lines: Lines::OfProblems,
+            ..Self::new(file, None, locale)
+        }
+    }
+
+    /// For a data-flow program: an editor can go to the places of what is wrong with its text, if it has one.
+    pub fn of_flow(file: &Path, flow: &'a Flow, locale: Locale) -> Self {
+        let text = flow.text.as_deref();
+        Self {
+            lines: text.map_or(Lines::None, |text| {
+                Lines::OfObjects(Places::of(text, &flow.project))
+            }),
+            ..Self::new(file, None, locale)
+        }
+    }
+
+    /// The places of problems in the file.
+    fn in_file(&self, problems: &[Problem]) -> Vec<Option<Position>> {
+        match &self.lines {
+            Lines::None => vec![None; problems.len()],
+            Lines::OfProblems => problems.iter().map(|one| one.place.position).collect(),
+            Lines::OfObjects(places) => places.locate(problems),
         }
     }
 
@@ -73,12 +115,13 @@ impl<'a> Reporter<'a> {
 
     /// A line for each.
     pub fn lines(&self, problems: &[Problem]) -> Vec<String> {
-        problems.iter().map(|problem| self.line(problem)).collect()
+        let places = problems.iter().zip(self.in_file(problems));
+        places.map(|(problem, at)| self.line(problem, at)).collect()
     }
 
     /// A line of JSON for each: level and message as in the results of `trik check`, and where it is.
     pub fn json(&self, problems: &[Problem]) -> Vec<String> {
-        let line = |problem: &Problem| {
+        let line = |(problem, in_file): (&Problem, Option<Position>)| {
             let place = &problem.place;
             let level = match problem.severity {
                 Severity::Error => "error",
@@ -86,7 +129,7 @@ impl<'a> Reporter<'a> {
                 Severity::Note => "note",
             };
             let at = place.position;
-            let line = json!({
+            let mut line = json!({
                 "file": self.file,
                 "level": level,
                 "message": problem.said(self.locale),
@@ -98,22 +141,28 @@ impl<'a> Reporter<'a> {
                 "line": at.map(|at| at.line),
                 "column": at.map(|at| at.column),
             });
+            if let Some(at) = in_file {
+                line["fileLine"] = at.line.into();
+                line["fileColumn"] = at.column.into();
+            }
             line.to_string()
         };
-        problems.iter().map(line).collect()
+        let places = problems.iter().zip(self.in_file(problems));
+        places.map(line).collect()
     }
 
     fn block(&self, problem: &Problem) -> Option<&(usize, usize, &'a Block)> {
         self.blocks.get(problem.place.object.as_deref()?)
     }
 
-    fn line(&self, problem: &Problem) -> String {
+    fn line(&self, problem: &Problem, in_file: Option<Position>) -> String {
         let place = &problem.place;
-        let mut line = format!(
-            "{}: {}: ",
-            self.file,
-            words::severity(problem.severity, self.locale)
-        );
+        let mut line = self.file.clone();
+        if let Some(at) = in_file {
+            line.push_str(&format!(":{}:{}", at.line, at.column));
+        }
+        let severity = words::severity(problem.severity, self.locale);
+        line.push_str(&format!(": {severity}: "));
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));
         }
@@ -134,6 +183,8 @@ impl<'a> Reporter<'a> {
                 line.push_str(&format!("'{name}' {}:{}: ", at.line, at.column));
             }
             (Some(name), None) => line.push_str(&format!("'{name}': ")),
+            // The line begins with it.
+            (None, Some(at)) if in_file == Some(at) => {}
             (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
             (None, None) => {}
         }

@@ -8,7 +8,6 @@ use crate::input;
 use crate::input::words::{A_DIAGRAM, why};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
-use lang_dataflow::read::{Language, language};
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
 use lang_text::problem::{Locale, Problem, Words};
@@ -28,17 +27,12 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
     read::read(&bytes).map_err(Unreadable::Save)
 }
 
-/// Reads a save with diagrams of control flow, of which nothing else can be said if it cannot be read.
+/// Reads a save, of which nothing else can be said if it cannot be read; a data-flow program as text is none.
 pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
-    let other = || Unreadable::File(words::only_control_flow());
     let opened = match flow::is_text(path) {
-        true => Err(other()),
+        true => Err(Unreadable::File(words::only_saves())),
         false => open(path),
     };
-    let opened = opened.and_then(|opened| match language(&opened.save) {
-        Language::Diagram => Ok(opened),
-        Language::Dataflow => Err(other()),
-    });
     must(opened, path, locale)
 }
 
@@ -53,7 +47,10 @@ pub(crate) fn must<T>(
             Unreadable::File(why) => {
                 vec![format!("trik: {}: {}", named(path), why.in_locale(locale))]
             }
-            Unreadable::Save(problems) => Reporter::new(path, None, locale).lines(&problems),
+            Unreadable::Save(problems) => match flow::is_text(path) {
+                true => Reporter::of_unread_text(path, locale).lines(&problems),
+                false => Reporter::new(path, None, locale).lines(&problems),
+            },
         },
         code: UNREADABLE,
     })

@@ -103,10 +103,10 @@ pub(super) fn is_program() -> Words {
     )
 }
 
-/// Why a program is not taken where only the other language is known.
-pub(super) fn only_control_flow() -> Words {
+/// Why a program as text is not taken where a world is changed.
+pub(super) fn only_saves() -> Words {
     Words::new(
-        "this is a data-flow program: it can be shown, checked, run, and stopped on a robot (trik break), and not this",
-        "это потоковая программа: её можно показать, проверить, запустить и остановить на роботе (trik break), но не это",
+        "this is a data-flow program as text, which has no world: only a save (.qrs) can be changed",
+        "это потоковая программа в виде текста, и мира у неё нет: изменить можно только файл .qrs",
     )
 }

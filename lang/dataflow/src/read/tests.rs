@@ -116,6 +116,33 @@ fn former_elements_keep_their_meaning() {
 }
 
 #[test]
+fn what_an_editor_has_lost_is_counted_and_put_back() {
+    let main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
+    let whole = save(&with_ids(made(vec![main])));
+    let mut objects = whole.objects().clone();
+    let is_lost = |id: &String| id.contains("/DFSayBlock/") || id.contains("/Edge/");
+    for object in objects.iter_mut() {
+        object.children.retain(|id| !is_lost(id));
+        for (_, ids) in &mut object.lists {
+            ids.retain(|id| !is_lost(id));
+        }
+    }
+    let bytes = Save::made(objects, whole.meta().clone()).write();
+    let mut opened = read(&bytes.expect("a save")).expect("a project");
+    let told = opened.problems[0].to_string();
+    assert!(
+        told.contains("1 block and 1 link are in the file"),
+        "{told}"
+    );
+    assert!(opened.save.recover_orphans() > 0);
+    let (project, problems) = super::project(&opened.save);
+    assert!(problems.is_empty(), "{problems:?}");
+    let main = &project.diagrams[0];
+    assert_eq!((main.blocks.len(), main.edges.len()), (2, 1));
+    assert_eq!(main.edges[0].to.map(|end| end.block), Some(1));
+}
+
+#[test]
 fn strange_saves_are_told_and_kept() {
     let mut main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
     main.blocks[1].element = "DFTeleportBlock".to_owned();

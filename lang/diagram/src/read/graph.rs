@@ -4,6 +4,7 @@ use super::meta::Meta;
 use super::{parameters, words};
 use crate::objects::{self, Kind, Object, Objects};
 use crate::project::{Block, Diagram, DiagramKind, Link, Project};
+use crate::save::is_link;
 use lang_text::problem::{Problem, Severity, Words, keep};
 use std::collections::{HashMap, HashSet};
 
@@ -258,7 +259,7 @@ impl<'a> Graph<'a> {
         let Some(first) = orphans.first() else {
             return;
         };
-        let links = orphans.iter().filter(|one| one.element() == LINK).count();
+        let links = orphans.iter().filter(|one| is_link(one)).count();
         let words = words::orphans(orphans.len() - links, links);
         // It is about all of them, so only the id names one.
         let mut problem = Problem::warning(words);

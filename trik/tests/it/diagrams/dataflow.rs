@@ -3,6 +3,7 @@
 use super::{root, trik};
 use harness::Board;
 use lang_dataflow::{save, text};
+use lang_diagram::read::{Save, read};
 use std::fs;
 
 /// The programs in the fences of the document, with the names of their diagrams.
@@ -128,6 +129,70 @@ fn rubbish_is_refused_with_its_place() {
 }
 
 #[test]
+fn an_editor_can_go_to_what_is_wrong_in_a_text() {
+    let board = Board::new();
+    let text = "diagram \"A\"\n  x: Sensor(VarName = sensorA9)\n  F: \"Text programming\"(\n    IO0 = `1;\n      2 +`)\n\nsubprogram \"B\"\n  s: Say\n";
+    board.file("wrong.flow", text);
+    board.file("torn.flow", "diagram \"A\"\n  x Sensor\n");
+    let told = trik(&board, &["lint", "wrong.flow", "torn.flow"]).stdout;
+    for start in [
+        "wrong.flow:2:23: error: A: Sensor 'x': 'Sensor': there is no sensor 'sensorA9'",
+        "torn.flow:2:3: error: ",
+    ] {
+        assert!(told.lines().any(|line| line.starts_with(start)), "{told}");
+    }
+    board.file("wrong.flow", text.replace("sensorA9", "sensorA1"));
+    let told = trik(&board, &["lint", "wrong.flow"]).stdout;
+    for start in [
+        "wrong.flow:5:9: error: A: Text programming 'F': 'IO0' 2:9: ",
+        "wrong.flow:7:1: warning: B: nothing that runs calls it",
+    ] {
+        assert!(told.lines().any(|line| line.starts_with(start)), "{told}");
+    }
+    let told = trik(&board, &["lint", "--json", "wrong.flow"]).stdout;
+    assert!(told.contains("\"fileColumn\":1,\"fileLine\":7,"), "{told}");
+    // What is shown of one diagram is what it calls.
+    let one = trik(&board, &["show", "wrong.flow", "--diagram", "B"]).stdout;
+    assert_eq!(one, "Subprogram \"B\" (not called):\n  s - Say\n");
+}
+
+#[test]
+fn lost_blocks_of_a_save_are_put_back_and_its_world_is_replaced() {
+    let board = Board::new();
+    let program = wall_follower();
+    board.file("wall.flow", &program);
+    let whole = save::save(&text::read(&program).expect("a program"));
+    let mut objects = whole.objects().clone();
+    for object in objects.iter_mut() {
+        object
+            .children
+            .retain(|id| !id.contains("/DFSupressorBlock/"));
+    }
+    let lost = Save::made(objects, whole.meta().clone());
+    board.file("lost.qrs", lost.write().expect("a save"));
+    let output = trik(&board, &["lint", "lost.qrs", "--recover", "found.qrs"]);
+    let start = "found.qrs: written, with ";
+    assert!(output.stdout.starts_with(start), "{}", output.stdout);
+    assert_eq!(output.code(), 0, "{}", output.stdout);
+    let text = trik(&board, &["lint", "wall.flow", "--recover", "x.qrs"]);
+    let why = "this is a text, and --recover is for diagrams";
+    assert!(text.stderr.contains(why), "{}", text.stderr);
+    // The robot has its sensors in the world that is put in.
+    fs::copy(
+        root().join("examples/dataflow/walls.xml"),
+        board.path("walls.xml"),
+    )
+    .expect("a world");
+    let patched = trik(&board, &["patcher", "found.qrs", "-f", "walls.xml"]);
+    assert_eq!(patched.code(), 0, "{}", patched.stderr);
+    let saved = fs::read(board.path("found.qrs")).expect("a save");
+    let world = read(&saved).expect("a save").project.world;
+    assert!(world.is_some_and(|world| world.contains("<root")));
+    let none = trik(&board, &["patcher", "wall.flow", "-f", "walls.xml"]);
+    assert_eq!(none.code(), 1);
+}
+
+#[test]
 fn what_is_strange_in_a_run_is_told_and_ends_nothing() {
     let board = Board::new();
     let source = "diagram \"Late\"\n  L: Loop(end_border = 5, time = 10)\n  W: \"Wait and send\"(time = 100)\n  S: Say\n  L.OUT -> W.DATA\n  W.OUT -> S.CF_IN\n";
@@ -170,7 +235,7 @@ fn programs_become_converters_in_lua_and_c_and_in_nothing_else() {
     board.file("say.flow", "diagram \"Says\"\n  hello: Say(text = hello)\n");
     let says = trik(&board, &["gen", "say.flow", "--lang", "lua"]);
     assert_eq!(says.code(), 1);
-    let told = "say.flow: error: Says: Say 'hello': 'Say' does something beside computing";
+    let told = "say.flow:2:3: error: Says: Say 'hello': 'Say' does something beside computing";
     assert!(says.stderr.contains(told), "{}", says.stderr);
     assert!(says.stderr.contains("trik: no program was written"));
 }
