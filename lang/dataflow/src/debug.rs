@@ -13,13 +13,13 @@ mod words;
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::patch::{Patched, Refused as NoVersion, Version};
-use crate::machine::stops::{NoPoint, Step};
+use crate::machine::stops::Step;
 use crate::machine::trace::Trace;
 use crate::program::{NodeId, Target};
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::debug::desk::Refused as Common;
 use lang_diagram::debug::order::Order;
-use lang_diagram::debug::{Breakpoint, NoBreakpoint, Step as Walk};
+use lang_diagram::debug::{Breakpoint, NoBreakpoint, Step as Walk, report as shared};
 use lang_diagram::machine::Status;
 use lang_expr::Value;
 use lang_text::json::Object;
@@ -81,7 +81,7 @@ impl Tap {
             kind: "",
             count: 0,
         });
-        seen.kind = report::kind(value);
+        seen.kind = shared::kind(value);
         seen.count = seen.count.saturating_add(1);
         seen.last = match is_long {
             true => Value::text(value.brief()),
@@ -115,17 +115,9 @@ impl From<Common> for Refused {
     }
 }
 
-impl From<NoPoint> for Refused {
-    fn from(why: NoPoint) -> Self {
-        match why {
-            NoPoint::NoSuchBlock => Common::Breakpoint(NoBreakpoint::NoSuchBlock).into(),
-            NoPoint::TooMany => Self::Cannot(words::too_many_points(limits::BREAKPOINTS_MAX)),
-            NoPoint::TooLong => Common::Breakpoint(NoBreakpoint::TooLong).into(),
-            NoPoint::Condition(problems) => {
-                Common::Breakpoint(NoBreakpoint::Condition(problems)).into()
-            }
-            NoPoint::Cannot(words) => Self::Cannot(words),
-        }
+impl From<NoBreakpoint> for Refused {
+    fn from(why: NoBreakpoint) -> Self {
+        Common::Breakpoint(why).into()
     }
 }
 
@@ -257,19 +249,25 @@ impl Desk {
         told.plain("to", tag).plain("done", is_done).done()
     }
 
-    /// Where the program is, if that was not told yet, for everybody who looks on.
-    pub fn news(&mut self) -> Option<String> {
+    /// The lines that breakpoints have written since the last time, as a JSON object.
+    pub fn log(&mut self) -> Option<String> {
+        shared::log(self.machine.points_mut().take_lines())
+    }
+
+    /// What has happened since the last time, for everybody who looks on, each as a JSON object.
+    pub fn news(&mut self) -> Vec<String> {
+        let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match (self.is_attached, self.machine.status()) {
             (false, _) => Announcement::Detached,
             (true, Status::Ended { .. }) => Announcement::Ended,
             (true, Status::Running) if self.is_stopped() => Announcement::Stopped,
             (true, Status::Running) => Announcement::Runs,
         };
-        if now == self.told {
-            return None;
+        if now != self.told {
+            self.told = now;
+            news.extend((now != Announcement::Detached).then(|| self.state()));
         }
-        self.told = now;
-        (now != Announcement::Detached).then(|| self.state())
+        news
     }
 
     fn state(&self) -> String {
@@ -328,14 +326,14 @@ impl Desk {
                 return Ok(report::object().plain("number", number));
             }
             Order::Clear(number) => {
-                let is_found = machine.clear_points(*number);
+                let is_found = machine.points_mut().clear(*number);
                 return found(is_found, *number);
             }
             Order::Enable(number, is_enabled) => {
-                let is_found = machine.enable_point(*number, *is_enabled);
+                let is_found = machine.points_mut().enable(*number, *is_enabled);
                 return found(is_found, Some(*number));
             }
-            Order::Breakpoints(after) => return Ok(report::points(machine, *after)),
+            Order::Breakpoints(after) => return Ok(shared::breakpoints(machine.points(), *after)),
             Order::Errors(true) => return Err(Refused::Cannot(words::errors_end())),
             Order::Errors(false) => return Ok(report::object()),
             Order::Motors(rest) => {
@@ -345,11 +343,11 @@ impl Desk {
             Order::Set(name, text) => {
                 self.assign(name, text).map_err(Common::Expression)?;
                 let value = self.machine.value_of(name);
-                return Ok(value.map_or_else(report::object, |value| report::value(&value)));
+                return Ok(value.map_or_else(report::object, |value| shared::value(&value)));
             }
             Order::Evaluate(text) => {
                 let value = machine.evaluate_aside(text).map_err(Common::Expression)?;
-                return Ok(report::value(&value));
+                return Ok(shared::value(&value));
             }
         }
         self.tap.listen(self.machine.now());

@@ -87,8 +87,6 @@ pub const PICTURE_PROPERTY_MAX: usize = 48;
 pub const SENTENCE_PROPERTY_MAX: usize = 400;
 /// Own names of a block; their bits are in one byte.
 pub const OWN_NAMES_MAX: usize = 8;
-/// Breakpoints of one program.
-pub const BREAKPOINTS_MAX: usize = 100;
 /// Bytes of what a debugger tells of variables, of ports, and of waiting tokens, each.
 pub const TOLD_BYTES: usize = 16 << 10;
 /// Characters of one text that it tells.

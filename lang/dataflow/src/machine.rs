@@ -16,6 +16,7 @@ pub mod patch;
 mod sensors;
 mod state;
 pub mod stops;
+mod subject;
 pub mod trace;
 pub mod values;
 mod words;
@@ -221,7 +222,10 @@ impl Machine {
                 self.deliver(target, value, env)?;
             }
         }
-        Ok(())
+        match self.stops.is_armed() && self.stops_after() {
+            true => Err(Halt::Stopped),
+            false => Ok(()),
+        }
     }
 
     /// The end of an instant: devices are told, and the program may be over.

@@ -10,7 +10,7 @@ use crate::limits;
 use crate::machine::Machine;
 use crate::machine::trace::{Guard, Moment, Trace};
 use crate::machine::view::Waits;
-use crate::program::{NOWHERE, Node, Program};
+use crate::program::{NOWHERE, Node};
 use lang_expr::Value;
 use lang_text::problem::{Problem, Severity};
 
@@ -28,8 +28,7 @@ mod words;
 
 use history::Position;
 pub use past::{Back, NoBack};
-use points::Points;
-pub use points::{Breakpoint, NoBreakpoint, Spot};
+pub use points::{Breakpoint, NoBreakpoint, Points, Spot, Subject};
 pub use session::{NotNow, Phase, Session};
 
 /// How far a thread goes.
@@ -153,7 +152,7 @@ impl Debugger {
     /// # Errors
     /// [`NoBreakpoint`].
     pub fn add(&mut self, machine: &Machine, point: Breakpoint) -> Result<u32, NoBreakpoint> {
-        self.points.add(machine, point)
+        self.points.add(&machine, point)
     }
 
     /// Takes a breakpoint away; false if there is none with this number.
@@ -177,8 +176,8 @@ impl Debugger {
     }
 
     /// The program that runs is another one: breakpoints are where their blocks are.
-    pub fn bind(&mut self, program: &Program) {
-        self.points.bind(program);
+    pub fn bind(&mut self, machine: &Machine) {
+        self.points.bind(&machine);
         // They are of blocks of the old one.
         self.entered_by.clear();
         self.assigned.clear();
@@ -186,7 +185,7 @@ impl Debugger {
 
     /// Somebody else than the program has changed values.
     fn look(&mut self, machine: &Machine) {
-        self.points.look(machine);
+        self.points.look(&machine);
     }
 
     /// The program stops as soon as it can.
@@ -304,23 +303,21 @@ impl Debugger {
 
     /// What breakpoints do before a block: those at it, and those whose variables have changed.
     #[cold]
-    fn met(&mut self, machine: &Machine, node: Node) -> Option<Reason> {
+    fn met(&mut self, mut machine: &Machine, node: Node) -> Option<Reason> {
         // Both have to count their hits.
         let changed = self.changed(machine);
-        let hit = self.points.at_block(machine, node);
+        let hit = self.points.at_block(&mut machine, node);
         changed.or(hit)
     }
 
     /// What breakpoints do whose variables have changed.
-    fn changed(&mut self, machine: &Machine) -> Option<Reason> {
-        let mut reason = self.points.at_changes(machine);
-        if let Some(Reason::Changed(change)) = &mut reason {
-            let mut assigned = self.assigned.iter().rev();
-            let by = assigned.find(|(name, _)| *name == change.variable);
-            change.by = by.map(|(_, node)| *node);
-        }
-        self.assigned.clear();
-        reason
+    fn changed(&mut self, mut machine: &Machine) -> Option<Reason> {
+        let assigned = std::mem::take(&mut self.assigned);
+        self.points.at_changes(&mut machine, |variable| {
+            let mut last = assigned.iter().rev();
+            let by = last.find(|(name, _)| **name == *variable);
+            by.map(|(_, node)| *node)
+        })
     }
 
     /// A thread has assigned a variable.

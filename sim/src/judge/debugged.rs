@@ -100,7 +100,7 @@ impl Debugged {
     pub fn news(&mut self) -> Vec<String> {
         match &mut self.program {
             Debuggee::Diagram(desk) => desk.news(),
-            Debuggee::Flow(flow) => flow.desk().news().into_iter().collect(),
+            Debuggee::Flow(flow) => flow.desk().news(),
         }
     }
 

@@ -69,7 +69,7 @@ pub(super) fn stack(
     let places: Vec<&At> = thread
         .into_iter()
         .flat_map(|thread| std::iter::once(&thread.at).chain(thread.calls.iter().rev()))
-        .chain(told.at().filter(|_| is_whole(told)))
+        .chain(told.at().or(by(told)).filter(|_| is_whole(told)))
         .collect();
     let (start, levels) = window;
     let levels = if levels == 0 { FRAMES } else { levels };
@@ -89,6 +89,12 @@ pub(super) fn stack(
         })
         .collect();
     json!({"stackFrames": frames, "totalFrames": places.len()})
+}
+
+/// The block that has changed a variable at which it is stopped: nothing may come after it in its instant.
+fn by(told: &Report) -> Option<&At> {
+    let change = told.stop.as_ref()?.change.as_ref()?;
+    change.by.as_ref()
 }
 
 /// A call as people see it: the diagram, and the sentence or the type of the block.

@@ -149,10 +149,13 @@ impl Flow {
         }
         self.was_stopped = is_stopped;
         self.told_at = now;
-        match self.desk.news() {
-            Some(state) => host.debug(ALL, &state),
-            None => Ok(()),
+        if let Some(log) = self.desk.log() {
+            host.debug_log(&log)?;
         }
+        for state in self.desk.news() {
+            host.debug(ALL, &state)?;
+        }
+        Ok(())
     }
 
     /// Does what the daemon asks for between two steps.

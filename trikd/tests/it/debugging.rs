@@ -157,6 +157,51 @@ fn a_diagram_begins_stopped_and_its_motors_rest_at_each_stop_and_come_back() {
     assert!(robot.has_rested());
 }
 
+/// M1 at 40 percent and a variable that counts every 30 ms, as a data-flow program.
+const FLOW: &str = "
+diagram \"Counter\"
+  numbers: Loop(start_border = 1, end_border = 1000, increment = 1, time = 30)
+  sum: \"Text programming\"(IO0 = `n = I0; 40`)
+  wheels: Motors
+  numbers.OUT -> sum.I0
+  sum.O0 -> wheels.M1
+";
+
+#[test]
+fn a_data_flow_program_stops_at_changes_and_its_lines_reach_all_who_debug() {
+    let robot = robot(&[]);
+    let (mut client, mut other) = (robot.client("control"), robot.client("control"));
+    client.send(&format!("file:count.flow:{FLOW}"));
+    client.send("debug:1 run count.flow");
+    client.until("info: count.flow has started");
+    let state = until_state(&mut client, "stopped");
+    assert!(state.contains("\"reason\":\"pause\""), "{state}");
+    expect(&mut other, 2, "look", "\"state\":\"stopped\"");
+    expect(&mut client, 3, "watch nn", "no variable 'nn'");
+    expect(
+        &mut client,
+        4,
+        "watch n\nif n > 5",
+        "{\"number\":1,\"to\":4,\"done\":true}",
+    );
+    expect(
+        &mut client,
+        5,
+        "watch n\nlog n is {n}",
+        "{\"number\":2,\"to\":5,\"done\":true}",
+    );
+    expect(&mut client, 6, "continue", "\"state\":\"running\"");
+    other.until("debug: {\"log\":[\"n is 1\"");
+    let state = until_state(&mut client, "stopped");
+    let why =
+        "\"reason\":\"change\",\"number\":1,\"variable\":\"n\",\"was\":\"5\",\"is\":\"6\",\"by\":{";
+    assert!(state.contains(why), "{state}");
+    assert_eq!(motor(&robot), "0", "motors rest at a stop");
+    expect(&mut client, 7, "clear all", "\"done\":true");
+    expect(&mut client, 8, "continue", "\"state\":\"running\"");
+    eventually("it drives on", || motor(&robot) == "40");
+}
+
 #[test]
 fn one_client_is_in_control_and_the_others_see_who_and_what() {
     let (robot, mut one, save) = counts(COUNTING);

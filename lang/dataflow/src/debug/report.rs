@@ -5,13 +5,12 @@
 use super::Seen;
 use crate::limits::{TOLD_BYTES, TOLD_CHARACTERS_MAX};
 use crate::machine::Machine;
-use crate::machine::stops::{Reason, Stop};
+use crate::machine::stops::Stop;
 use crate::program::{NodeId, Program, Target};
-use lang_diagram::debug::Spot;
+use lang_diagram::debug::report::{kind, reason};
 use lang_diagram::machine::Status;
-use lang_expr::Value;
 use lang_text::json::Object;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::Locale;
 use std::collections::BTreeMap;
 
 /// Ports with what they gave.
@@ -107,79 +106,31 @@ fn waiting(machine: &Machine) -> impl Iterator<Item = (Target, usize, u32)> {
     })
 }
 
-/// A port: its diagram, its block by caption, id and type, and its name.
+/// A port: its block, and its name.
 fn place(program: &Program, at: Target) -> Object {
-    let node = program.node(at.node);
+    let name = program.node(at.node).port_name(at.port);
+    block(program, at.node).text("port", name)
+}
+
+/// A block: its diagram, its id, its type, and its caption.
+fn block(program: &Program, at: NodeId) -> Object {
+    let node = program.node(at);
     let instance = &program.instances[node.instance as usize];
     object()
         .text("diagram", &instance.name)
         .text("id", &node.id)
         .text("block", node.row.element)
         .text("caption", &node.caption)
-        .text("port", node.port_name(at.port))
 }
 
 fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
-    let told = match &stop.reason {
-        Reason::Pause => object().text("reason", "pause"),
-        Reason::Step => object().text("reason", "step"),
-        Reason::Breakpoint(number) => object()
-            .text("reason", "breakpoint")
-            .plain("number", number),
-        Reason::Condition(number, found) => object()
-            .text("reason", "condition")
-            .plain("number", number)
-            .text("text", &problems(found, locale)),
-    };
+    let program = machine.program();
+    let told = reason(&stop.reason, locale, |node| block(program, node).done());
     let Some((to, token)) = &stop.next else {
         return told.done();
     };
-    let at = place(machine.program(), *to)
+    let at = place(program, *to)
         .text("type", kind(token))
         .text("value", &token.brief());
     told.plain("at", at.done()).done()
-}
-
-/// Problems as a text, a line for each.
-fn problems(problems: &[Problem], locale: Locale) -> String {
-    let lines = problems.iter().map(|problem| problem.in_locale(locale));
-    lines.collect::<Vec<_>>().join("\n")
-}
-
-/// The value of an expression, with the word of its type.
-pub(super) fn value(value: &Value) -> Object {
-    object()
-        .text("type", kind(value))
-        .text("value", &value.brief())
-}
-
-/// Breakpoints after a number.
-pub(super) fn points(machine: &Machine, after: u32) -> Object {
-    let points = machine.points().filter(|(number, ..)| *number > after);
-    listed(object(), "breakpoints", points, |(number, point, hits)| {
-        let told = object().plain("number", number);
-        let told = match &point.at {
-            Spot::Block(block) => told.text("block", block),
-            Spot::Change(variable) => told.text("variable", variable),
-        };
-        told.text("if", &point.condition)
-            .plain("from", point.from_hit)
-            .text("log", &point.log)
-            .plain("once", point.is_once)
-            .plain("disabled", point.is_disabled)
-            .plain("hits", hits)
-            .done()
-    })
-}
-
-/// The word of a value's type.
-pub(super) fn kind(value: &Value) -> &'static str {
-    match value {
-        Value::Nil | Value::Unset => "nothing",
-        Value::Bool(_) => "bool",
-        Value::Int(_) => "int",
-        Value::Float(_) => "float",
-        Value::Text(_) => "text",
-        Value::List(_) => "list",
-    }
 }

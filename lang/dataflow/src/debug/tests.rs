@@ -1,6 +1,7 @@
 //! Programs under a debugger.
 
 mod changes;
+mod points;
 
 use super::*;
 use crate::check::check;
@@ -123,8 +124,9 @@ fn a_breakpoint_stops_before_the_token_and_motors_are_told_after_it() {
         state.contains("\"port\":\"M3\",\"type\":\"float\",\"value\":\"16\""),
         "{state}"
     );
-    assert_eq!(desk.news().map(|news| news.contains("stopped")), Some(true));
-    assert_eq!(desk.news(), None);
+    let news = desk.news();
+    assert!(news.len() == 1 && news[0].contains("stopped"), "{news:?}");
+    assert_eq!(desk.news(), Vec::<String>::new());
     // The same token goes on, and time with it from where it stood.
     assert!(told(&mut desk, "step").contains("\"done\":true"));
     runs(&mut desk, &mut robot, 110, 110);
@@ -190,7 +192,11 @@ fn what_cannot_be_done_is_refused_with_a_reason() {
         ("hold main", "no threads"),
         ("break qrm:/main/Z", "no such block"),
         ("break qrm:/main/A", "stop at the block after it"),
-        ("watch n", "stops before blocks"),
+        ("watch nn", "this cannot be watched: "),
+        ("watch nn", "no variable 'nn'"),
+        ("watch kk", "no variable 'kk'"),
+        ("watch sensorA1", "whose readings are tokens"),
+        ("watch abs", "never changes"),
         ("errors stop", "ends a data-flow program"),
         ("clear 7", "7"),
     ] {
@@ -198,7 +204,7 @@ fn what_cannot_be_done_is_refused_with_a_reason() {
         assert!(answer.contains("\"done\":false"), "{order}: {answer}");
         assert!(answer.contains(why), "{order}: {answer}");
     }
-    for _ in 0..crate::limits::BREAKPOINTS_MAX {
+    for _ in 0..lang_diagram::limits::BREAKPOINTS_MAX {
         assert!(told(&mut desk, "break qrm:/main/M").contains("\"done\":true"));
     }
     assert!(told(&mut desk, "break qrm:/main/M").contains("\"done\":false"));

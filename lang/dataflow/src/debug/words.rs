@@ -24,10 +24,3 @@ pub(super) fn errors_end() -> Words {
         "ошибка завершает потоковую программу: остановитесь перед названным блоком, с условием на data",
     )
 }
-
-pub(super) fn too_many_points(most: usize) -> Words {
-    Words::new(
-        format!("a data-flow program has at most {most} breakpoints"),
-        format!("у потоковой программы не больше {most} точек останова"),
-    )
-}

@@ -79,6 +79,7 @@ impl Machine {
         // A number with a fraction may be one too many for a text that needs a whole one.
         formulas.check_all(&self.program, &self.states)?;
         self.formulas = formulas;
+        self.look_again();
         Ok(())
     }
 }

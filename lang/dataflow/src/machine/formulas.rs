@@ -230,37 +230,28 @@ impl Formulas {
         lang_expr::evaluate(&source, &names, &mut self.store, outside).map(Some)
     }
 
-    /// Whether a text can be a condition: it assigns nothing, and its names are those of the program and `data`.
-    pub fn check_condition(&self, text: &str) -> Result<(), Vec<Problem>> {
-        let mut source = Source::with_own_names(text, Wanted::Bool, &condition_name);
-        let is_read = |name: &str| {
-            self.sources
-                .iter()
-                .any(|one| one.names().any(|one| one == name))
-        };
-        let is_known =
-            |name: &str| is_own(name) || self.names.find(name).is_some() || is_read(name);
-        if assigns(&source) || !source.names().all(is_known) {
-            return Err(vec![Problem::error(words::only_known_variables())]);
-        }
-        // The grammar alone: types come with values.
-        match source.tree().root {
-            Some(_) => Ok(()),
-            None => lang_expr::analyse(&mut source, &mut self.names.clone()),
-        }
+    /// All texts of the program.
+    pub fn sources(&self) -> &[Source] {
+        &self.sources
     }
 
-    /// Whether a condition holds for a token, which it sees as `data`. It does not while one of its variables has no value.
-    pub fn holds(
+    /// All names of the program.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// The value of a text of a breakpoint, which sees a token as `data`; nothing while one of its variables has no value.
+    pub fn look(
         &mut self,
-        text: &str,
-        token: &Value,
+        (text, wanted): (&str, Wanted),
+        token: Option<&Value>,
         outside: &mut dyn Outside,
-    ) -> Result<bool, Vec<Problem>> {
-        let mut source = Source::with_own_names(text, Wanted::Bool, &condition_name);
+    ) -> Result<Option<Value>, Vec<Problem>> {
+        let own = |name: &str| token.and_then(|_| token_name(name));
+        let mut source = Source::with_own_names(text, wanted, &own);
         let is_there = |name: &str| is_own(name) || self.names.find(name).is_some();
         if !source.names().all(is_there) {
-            return Ok(false);
+            return Ok(None);
         }
         let epoch = self.names.epoch();
         let is_new = self.aside.as_ref().is_none_or(|aside| aside.0 != epoch);
@@ -268,28 +259,31 @@ impl Formulas {
             self.aside = Some(Box::new((epoch, self.names.clone())));
         }
         let Some((_, names)) = self.aside.as_deref_mut() else {
-            return Ok(false);
+            return Ok(None);
         };
         let own = source
             .names()
             .find(|name| is_own(name))
             .map(Rc::<str>::from);
-        if own.is_some() && super::values::is_unit(token) {
-            return Err(vec![Problem::error(words::unit())]);
-        }
-        let slot = own.and_then(|own| names.slot(&own));
-        if let Some(slot) = slot {
+        let slot = match (own, token) {
+            (Some(_), Some(token)) if super::values::is_unit(token) => {
+                return Err(vec![Problem::error(words::unit())]);
+            }
+            (Some(own), Some(token)) => names.slot(&own).map(|slot| (slot, token)),
+            (Some(_) | None, _) => None,
+        };
+        if let Some((slot, token)) = slot {
             names.retype(slot, token);
             if self.store.set(slot, token.clone()).is_err() {
                 return Err(vec![Problem::error(words::too_many_variables())]);
             }
         }
-        let holds = lang_expr::analyse(&mut source, names)
-            .and_then(|()| lang_expr::evaluate_bool(&source, names, &mut self.store, outside));
-        if let Some(slot) = slot {
+        let value = lang_expr::analyse(&mut source, names)
+            .and_then(|()| lang_expr::evaluate(&source, names, &mut self.store, outside));
+        if let Some((slot, _)) = slot {
             self.store.remove(slot);
         }
-        holds
+        value.map(Some)
     }
 
     /// Whether all texts whose names have values can be understood with the types that those have; of the others nobody
@@ -359,8 +353,8 @@ fn assigns(source: &Source) -> bool {
     nodes.iter().any(|part| matches!(part, Part::Assign { .. }))
 }
 
-/// The name that stands for `data` in a condition.
-fn condition_name(name: &str) -> Option<Rc<str>> {
+/// The name that stands for `data` in a text of a breakpoint.
+pub(super) fn token_name(name: &str) -> Option<Rc<str>> {
     DATA.contains(&name).then(|| own_name(name, NodeId::MAX))
 }
 

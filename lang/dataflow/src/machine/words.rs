@@ -268,18 +268,51 @@ pub(crate) fn no_variable(name: &str, known: &[&str]) -> Words {
     )
 }
 
-pub(crate) fn only_blocks() -> Words {
+pub(crate) fn no_such_variable<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Words {
+    let near = near::did_you_mean(name, known);
     Words::new(
-        "a data-flow program stops before blocks: choose a block that reads the variable, with a condition",
-        "потоковая программа останавливается перед блоками: выберите блок, который читает переменную, с условием",
+        format!(
+            "the program has no variable '{}'{}",
+            short(name),
+            near.english
+        ),
+        format!(
+            "в программе нет переменной '{}'{}",
+            short(name),
+            near.russian
+        ),
     )
 }
 
-pub(crate) fn no_log() -> Words {
+pub(crate) fn sensor_gives_tokens(name: &str) -> Words {
     Words::new(
-        "breakpoints of a data-flow program write no lines: connect a Say block, or look at the ports",
-        "точки останова потоковой программы не пишут строк: присоедините блок \"Сказать\" или смотрите на порты",
+        format!(
+            "{} is a sensor, whose readings are tokens: stop at a block that gets them, with a condition on data",
+            short(name)
+        ),
+        format!(
+            "{} - датчик, его показания приходят сигналами: остановитесь на блоке, который их получает, с условием на data",
+            short(name)
+        ),
     )
+}
+
+pub(crate) fn never_changes(name: &str) -> Words {
+    Words::new(
+        format!("{} is no variable and never changes", short(name)),
+        format!("{} - не переменная и никогда не меняется", short(name)),
+    )
+}
+
+pub(crate) fn only_looked_at() -> Words {
+    Words::new(
+        "an expression that is only looked at cannot assign; == compares",
+        "в просматриваемом выражении не может быть присваивания; сравнивает ==",
+    )
+}
+
+pub(crate) fn no_value_yet() -> Words {
+    Words::new("no value yet", "значения ещё нет")
 }
 
 pub(crate) fn starts_by_itself() -> Words {

@@ -10,7 +10,7 @@ use crate::limits;
 use crate::machine::Machine;
 use crate::machine::trace::Trace;
 use crate::machine::view::Doing;
-use lang_text::json::{Object, quoted};
+use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem};
 
 /// A program with its debugger, for people elsewhere.
@@ -153,16 +153,7 @@ impl Desk {
 
     /// The lines that breakpoints have written since the last time, as a JSON object.
     pub fn log(&mut self) -> Option<String> {
-        let (lines, lost) = self.session.debugger().take_lines();
-        if lines.is_empty() && lost == 0 {
-            return None;
-        }
-        let all = lines.len();
-        let lines = lines.iter();
-        let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
-        let told = report::bounded(lines, limits::TOLD_LINES_BYTES);
-        let lost = lost as usize + all - told.len();
-        Some(object().list("log", told).plain("lost", lost).done())
+        report::log(self.session.debugger().take_lines())
     }
 
     /// What has happened since the last time, for everybody who looks on, each as a JSON object.
@@ -229,7 +220,7 @@ impl Desk {
                 return found(is_found, Some(*number));
             }
             Order::Breakpoints(after) => {
-                return Ok(report::breakpoints(session, *after, object()));
+                return Ok(report::breakpoints(&session.debugger().points, *after));
             }
             Order::Errors(stop) => {
                 session.debugger().stops_at_errors = *stop;

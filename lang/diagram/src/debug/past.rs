@@ -186,7 +186,7 @@ impl Search {
             };
             let begun = self.rerun.take().or_else(|| {
                 let rerun = history.rerun_of(part)?;
-                self.held = debugger.points.watched(rerun.machine());
+                self.held = debugger.points.watched(&rerun.machine());
                 Some(rerun)
             });
             let Some(mut rerun) = begun else {
@@ -273,16 +273,16 @@ impl Look for Looked<'_> {
 
 impl Looked<'_> {
     /// Why a breakpoint would have stopped at a moment.
-    fn stops(&mut self, machine: &Machine, node: Option<Node>) -> Option<Reason> {
+    fn stops(&mut self, mut machine: &Machine, node: Option<Node>) -> Option<Reason> {
         let points = &self.debugger.points;
         if points.has_watches() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        let changed = points.stops_at_changes(machine, &mut self.search.held);
+        let changed = points.stops_at_changes(&mut machine, &mut self.search.held);
         let node = node.filter(|node| points.is_marked(*node));
         if node.is_some() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        changed.or_else(|| points.stops_at(machine, node?))
+        changed.or_else(|| points.stops_at(&mut machine, node?))
     }
 }

@@ -1,7 +1,8 @@
 //! Breakpoints: at blocks and at changes of variables; what each was asked for, and how often it was hit.
 //!
 //! Owns the list, which of them may be set, and what those at a moment do. It knows blocks by the ids of the project, so
-//! that it survives a new version of the program. Whether the program goes on is decided by the debugger.
+//! that it survives a new version of the program. Whether the program goes on is decided by the debugger. It serves both
+//! languages of blocks: a program is a [`Subject`].
 
 use std::collections::VecDeque;
 
@@ -9,9 +10,68 @@ use super::{Change, Reason};
 use crate::check::aside;
 use crate::limits;
 use crate::machine::Machine;
-use crate::program::{Node, Program};
+use crate::program::Node;
 use lang_expr::Value;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
+
+/// A program as its breakpoints see it, at the moment at which it is. Looking changes nothing in it.
+pub trait Subject {
+    /// The nodes of a block, by its id in the project: several, if each call of its diagram has its own.
+    fn nodes(&self, id: &str) -> Vec<Node>;
+
+    /// Why the program never stops at a node; nothing, if it may.
+    fn never_stops(&self, _node: Node) -> Option<Words> {
+        None
+    }
+
+    /// Why changes of this name cannot be watched; nothing, if they can.
+    fn no_variable(&self, name: &str) -> Vec<Problem>;
+
+    /// What is wrong with an expression at such a breakpoint, whatever the program does.
+    fn mistakes(&self, text: &str, at: &Spot) -> Vec<Problem>;
+
+    /// What a variable that is watched holds.
+    fn value_of(&self, name: &str) -> Option<Value>;
+
+    /// Whether a condition holds.
+    ///
+    /// # Errors
+    /// It cannot be computed.
+    fn holds(&mut self, condition: &str) -> Result<bool, Vec<Problem>>;
+
+    /// The value of an expression.
+    ///
+    /// # Errors
+    /// It cannot be computed.
+    fn value(&mut self, text: &str) -> Result<Value, Vec<Problem>>;
+}
+
+impl Subject for &Machine {
+    fn nodes(&self, id: &str) -> Vec<Node> {
+        self.program().node(id).into_iter().collect()
+    }
+
+    fn no_variable(&self, name: &str) -> Vec<Problem> {
+        Machine::no_variable(self, name)
+    }
+
+    fn mistakes(&self, text: &str, _at: &Spot) -> Vec<Problem> {
+        self.mistakes_aside(text)
+    }
+
+    fn value_of(&self, name: &str) -> Option<Value> {
+        Machine::value_of(self, name)
+    }
+
+    fn holds(&mut self, condition: &str) -> Result<bool, Vec<Problem>> {
+        let value = self.evaluate_aside(condition)?;
+        Ok(value.to_bool())
+    }
+
+    fn value(&mut self, text: &str) -> Result<Value, Vec<Problem>> {
+        self.evaluate_aside(text)
+    }
+}
 
 /// Where a breakpoint counts.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -68,6 +128,8 @@ impl Breakpoint {
 pub enum NoBreakpoint {
     /// The program has no such block.
     NoSuchBlock,
+    /// The program never stops at this block, for this reason.
+    NeverStops(Words),
     /// There are [`limits::BREAKPOINTS_MAX`].
     TooMany,
     /// There are [`limits::WATCHES_MAX`] of those that stop at changes.
@@ -88,6 +150,7 @@ impl NoBreakpoint {
         use super::words;
         match self {
             Self::NoSuchBlock => words::no_such_block().in_locale(locale).to_owned(),
+            Self::NeverStops(why) => why.in_locale(locale).to_owned(),
             Self::TooMany => words::too_many_breakpoints(limits::BREAKPOINTS_MAX)
                 .in_locale(locale)
                 .to_owned(),
@@ -105,7 +168,7 @@ impl NoBreakpoint {
 }
 
 /// What is wrong with a part of a breakpoint, a line for each problem.
-fn told(part: lang_text::problem::Words, problems: &[Problem], locale: Locale) -> String {
+fn told(part: Words, problems: &[Problem], locale: Locale) -> String {
     let lines = problems.iter().map(|problem| {
         let problem = problem.in_locale(locale);
         format!("{}: {problem}", part.in_locale(locale))
@@ -118,7 +181,7 @@ struct Kept {
     number: u32,
     point: Breakpoint,
     /// Where its block is in the program that runs.
-    node: Option<Node>,
+    nodes: Vec<Node>,
     /// What its variable held when it was last looked at.
     held: Option<Value>,
     hits: u32,
@@ -126,7 +189,7 @@ struct Kept {
 
 /// All breakpoints of a debugger, and the lines that they have written.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Points {
+pub struct Points {
     all: Vec<Kept>,
     numbers: u32,
     /// By node: whether there is a breakpoint.
@@ -139,18 +202,19 @@ pub(super) struct Points {
 
 impl Points {
     /// None, whose numbers go on after these.
-    pub(super) fn without_all(&self) -> Self {
+    #[must_use]
+    pub fn without_all(&self) -> Self {
         Self {
             numbers: self.numbers,
             ..Self::default()
         }
     }
 
-    pub(super) fn add(
-        &mut self,
-        machine: &Machine,
-        point: Breakpoint,
-    ) -> Result<u32, NoBreakpoint> {
+    /// Adds a breakpoint; its number.
+    ///
+    /// # Errors
+    /// [`NoBreakpoint`].
+    pub fn add(&mut self, subject: &impl Subject, point: Breakpoint) -> Result<u32, NoBreakpoint> {
         if self.all.len() >= limits::BREAKPOINTS_MAX {
             return Err(NoBreakpoint::TooMany);
         }
@@ -158,35 +222,39 @@ impl Points {
         if longest > limits::CONDITION_MAX {
             return Err(NoBreakpoint::TooLong);
         }
+        let nodes = point.nodes(subject);
         match &point.at {
-            Spot::Block(block) if machine.program().node(block).is_none() => {
-                return Err(NoBreakpoint::NoSuchBlock);
+            Spot::Block(_) => {
+                let Some(&first) = nodes.first() else {
+                    return Err(NoBreakpoint::NoSuchBlock);
+                };
+                if let Some(why) = subject.never_stops(first) {
+                    return Err(NoBreakpoint::NeverStops(why));
+                }
             }
             Spot::Change(_) if self.watches >= limits::WATCHES_MAX => {
                 return Err(NoBreakpoint::TooManyWatches);
             }
-            Spot::Change(name) => refuse(machine.no_variable(name), NoBreakpoint::Variable)?,
-            Spot::Block(_) => {}
+            Spot::Change(name) => refuse(subject.no_variable(name), NoBreakpoint::Variable)?,
         }
-        refuse(mistakes(machine, &point.condition), NoBreakpoint::Condition)?;
-        refuse(
-            aside::mistakes_of_line(&point.log, |text| mistakes(machine, text)),
-            NoBreakpoint::Line,
-        )?;
+        let mistakes = |text: &str| mistakes(subject, text, &point.at);
+        refuse(mistakes(&point.condition), NoBreakpoint::Condition)?;
+        let of_line = aside::mistakes_of_line(&point.log, mistakes);
+        refuse(of_line, NoBreakpoint::Line)?;
         self.numbers = self.numbers.wrapping_add(1);
         self.all.push(Kept {
             number: self.numbers,
-            held: point.held(machine),
+            held: point.held(subject),
             point,
-            node: None,
+            nodes,
             hits: 0,
         });
-        self.bind(machine.program());
+        self.mark();
         Ok(self.numbers)
     }
 
     /// Takes one away, or all; false if there is none with this number.
-    pub(super) fn clear(&mut self, number: Option<u32>) -> bool {
+    pub fn clear(&mut self, number: Option<u32>) -> bool {
         let before = self.all.len();
         self.all
             .retain(|kept| number.is_some_and(|number| kept.number != number));
@@ -194,7 +262,8 @@ impl Points {
         number.is_none() || self.all.len() < before
     }
 
-    pub(super) fn enable(&mut self, number: u32, is_enabled: bool) -> bool {
+    /// Lets one do something or nothing; false if there is none with this number.
+    pub fn enable(&mut self, number: u32, is_enabled: bool) -> bool {
         let mut points = self.all.iter_mut();
         let found = points.find(|kept| kept.number == number);
         found
@@ -202,26 +271,29 @@ impl Points {
             .is_some()
     }
 
-    pub(super) fn all(&self) -> impl Iterator<Item = (u32, &Breakpoint, u32)> {
+    /// All with their numbers, and how often each was hit.
+    pub fn all(&self) -> impl Iterator<Item = (u32, &Breakpoint, u32)> {
         let kept = self.all.iter();
         kept.map(|kept| (kept.number, &kept.point, kept.hits))
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
     /// The program that runs is another one: breakpoints are where their blocks are. Those of blocks that are gone wait
     /// until such a block comes back.
-    pub(super) fn bind(&mut self, program: &Program) {
+    pub fn bind(&mut self, subject: &impl Subject) {
         for kept in &mut self.all {
-            kept.node = match &kept.point.at {
-                Spot::Block(block) => program.node(block),
-                Spot::Change(_) => None,
-            };
+            kept.nodes = kept.point.nodes(subject);
         }
         self.mark();
     }
 
     fn mark(&mut self) {
         self.marked.clear();
-        for node in self.all.iter().filter_map(|kept| kept.node) {
+        for &node in self.all.iter().flat_map(|kept| &kept.nodes) {
             let at = node as usize;
             if self.marked.len() <= at {
                 self.marked.resize(at + 1, false);
@@ -233,7 +305,7 @@ impl Points {
     }
 
     /// Whether any stops at changes.
-    pub(super) fn has_watches(&self) -> bool {
+    pub fn has_watches(&self) -> bool {
         self.watches > 0
     }
 
@@ -247,54 +319,65 @@ impl Points {
     }
 
     /// Somebody else has changed values: that is no change of the program's.
-    pub(super) fn look(&mut self, machine: &Machine) {
+    pub fn look(&mut self, subject: &impl Subject) {
         for kept in &mut self.all {
-            kept.held = kept.point.held(machine);
+            kept.held = kept.point.held(subject);
         }
     }
 
-    pub(super) fn is_marked(&self, node: Node) -> bool {
+    /// Whether one is at a node.
+    pub fn is_marked(&self, node: Node) -> bool {
         self.marked.get(node as usize).copied().unwrap_or(false)
     }
 
     /// What the breakpoints at a block do.
-    pub(super) fn at_block(&mut self, machine: &Machine, node: Node) -> Option<Reason> {
+    pub fn at_block(&mut self, subject: &mut impl Subject, node: Node) -> Option<Reason> {
         if !self.is_marked(node) {
             return None;
         }
-        self.meet(machine, |kept| {
-            (kept.node == Some(node)).then_some(Reason::Breakpoint(kept.number))
+        self.meet(subject, |kept, _| {
+            let is_here = kept.nodes.contains(&node);
+            is_here.then_some(Reason::Breakpoint(kept.number))
         })
     }
 
-    /// What those do whose variables have changed since they were last looked at.
-    pub(super) fn at_changes(&mut self, machine: &Machine) -> Option<Reason> {
+    /// What those do whose variables have changed since they were last looked at; `by` is the block that has assigned
+    /// a variable, if that is known.
+    pub fn at_changes(
+        &mut self,
+        subject: &mut impl Subject,
+        by: impl Fn(&str) -> Option<Node>,
+    ) -> Option<Reason> {
         if self.watches == 0 {
             return None;
         }
-        self.meet(machine, |kept| {
-            let is = kept.point.held(machine);
-            changed(kept, is).map(|change| Reason::Changed(Box::new(change)))
+        self.meet(subject, |kept, subject| {
+            let is = kept.point.held(subject);
+            let mut change = changed(kept, is)?;
+            change.by = by(&change.variable);
+            Some(Reason::Changed(Box::new(change)))
         })
     }
 
-    fn meet(
+    fn meet<S: Subject>(
         &mut self,
-        machine: &Machine,
-        mut is_met: impl FnMut(&mut Kept) -> Option<Reason>,
+        subject: &mut S,
+        mut is_met: impl FnMut(&mut Kept, &S) -> Option<Reason>,
     ) -> Option<Reason> {
         let mut reason = None;
         let mut gone = None;
         for at in 0..self.all.len() {
             let kept = &mut self.all[at];
-            let Some(why) = is_met(kept) else { continue };
+            let Some(why) = is_met(kept, subject) else {
+                continue;
+            };
             if kept.point.is_disabled {
                 continue;
             }
             if !kept.point.condition.is_empty() {
-                match machine.evaluate_aside(&kept.point.condition) {
-                    Ok(value) if !value.to_bool() => continue,
-                    Ok(_) => {}
+                match subject.holds(&kept.point.condition) {
+                    Ok(false) => continue,
+                    Ok(true) => {}
                     Err(problems) => {
                         reason.get_or_insert(Reason::Condition(kept.number, problems));
                         continue;
@@ -311,7 +394,7 @@ impl Points {
                 }
                 reason.get_or_insert(why);
             } else {
-                let line = filled(&kept.point.log, machine);
+                let line = filled(&kept.point.log, subject);
                 self.line(line);
             }
         }
@@ -322,34 +405,34 @@ impl Points {
     }
 
     /// The breakpoint that would stop at a block in the past: hits are not counted there, and nothing is logged.
-    pub(super) fn stops_at(&self, machine: &Machine, node: Node) -> Option<Reason> {
+    pub fn stops_at(&self, subject: &mut impl Subject, node: Node) -> Option<Reason> {
         let mut points = self.all.iter();
-        let here = points.find(|kept| kept.node == Some(node) && kept.point.would_stop(machine));
+        let here = points.find(|kept| kept.nodes.contains(&node) && kept.point.would_stop(subject));
         here.map(|kept| Reason::Breakpoint(kept.number))
     }
 
     /// What variables that are watched hold, in the order of the breakpoints.
-    pub(super) fn watched(&self, machine: &Machine) -> Vec<Option<Value>> {
+    pub fn watched(&self, subject: &impl Subject) -> Vec<Option<Value>> {
         let all = self.all.iter();
-        all.map(|kept| kept.point.held(machine)).collect()
+        all.map(|kept| kept.point.held(subject)).collect()
     }
 
     /// The breakpoint that would stop in the past because its variable is another one than `before`, which becomes what it
     /// is now.
-    pub(super) fn stops_at_changes(
+    pub fn stops_at_changes(
         &self,
-        machine: &Machine,
+        subject: &mut impl Subject,
         before: &mut Vec<Option<Value>>,
     ) -> Option<Reason> {
         if self.watches == 0 {
             return None;
         }
-        let now = self.watched(machine);
+        let now = self.watched(subject);
         let was = std::mem::replace(before, now);
         let all = self.all.iter().zip(was).zip(before);
         let mut changes = all.filter_map(|((kept, was), is)| {
             let change = Change::of(kept.number, &kept.point, was, is.clone())?;
-            kept.point.would_stop(machine).then_some(change)
+            kept.point.would_stop(subject).then_some(change)
         });
         changes
             .next()
@@ -365,7 +448,7 @@ impl Points {
     }
 
     /// Lines of breakpoints that log, and how many were lost because nobody took them.
-    pub(super) fn take_lines(&mut self) -> (Vec<String>, u32) {
+    pub fn take_lines(&mut self) -> (Vec<String>, u32) {
         let lost = std::mem::take(&mut self.lines_lost);
         (self.lines.drain(..).collect(), lost)
     }
@@ -380,20 +463,25 @@ impl Breakpoint {
         }
     }
 
+    /// Where its block is.
+    fn nodes(&self, subject: &impl Subject) -> Vec<Node> {
+        match &self.at {
+            Spot::Block(block) => subject.nodes(block),
+            Spot::Change(_) => Vec::new(),
+        }
+    }
+
     /// What its variable holds.
-    fn held(&self, machine: &Machine) -> Option<Value> {
+    fn held(&self, subject: &impl Subject) -> Option<Value> {
         match &self.at {
             Spot::Block(_) => None,
-            Spot::Change(name) => machine.value_of(name),
+            Spot::Change(name) => subject.value_of(name),
         }
     }
 
     /// Whether it stops where it is met, whatever its hits.
-    fn would_stop(&self, machine: &Machine) -> bool {
-        let holds = || {
-            let found = machine.evaluate_aside(&self.condition);
-            found.is_ok_and(|value| value.to_bool())
-        };
+    fn would_stop(&self, subject: &mut impl Subject) -> bool {
+        let mut holds = || subject.holds(&self.condition) == Ok(true);
         !self.is_disabled && self.log.is_empty() && (self.condition.is_empty() || holds())
     }
 }
@@ -409,10 +497,10 @@ fn refuse(
 }
 
 /// What is wrong with an expression whatever the program does; an empty one is none.
-fn mistakes(machine: &Machine, text: &str) -> Vec<Problem> {
+fn mistakes(subject: &impl Subject, text: &str, at: &Spot) -> Vec<Problem> {
     match text.trim() {
         "" => Vec::new(),
-        _ => machine.mistakes_aside(text),
+        _ => subject.mistakes(text, at),
     }
 }
 
@@ -466,7 +554,7 @@ fn same(one: &Value, other: &Value) -> bool {
 }
 
 /// A line with values instead of each `{expression}`; what cannot be computed says why.
-fn filled(line: &str, machine: &Machine) -> String {
+fn filled(line: &str, subject: &mut impl Subject) -> String {
     let mut out = String::new();
     let mut rest = line;
     while let Some((before, after)) = rest.split_once('{') {
@@ -476,7 +564,7 @@ fn filled(line: &str, machine: &Machine) -> String {
             rest = after;
             continue;
         };
-        match machine.evaluate_aside(expression) {
+        match subject.value(expression) {
             Ok(value) => out.push_str(&value.to_text()),
             Err(problems) => {
                 let why = problems.first().map(|problem| &*problem.words.english);

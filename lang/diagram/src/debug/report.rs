@@ -2,13 +2,13 @@
 //!
 //! Owns the form, which `docs/protocol.md` describes. Knows no transport.
 
-use super::{Breakpoint, Phase, Reason, Session, Spot, Stop};
+use super::{Breakpoint, Phase, Points, Reason, Session, Spot, Stop};
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::view::{Doing, ThreadView, Waits};
 use crate::program::Node;
 use lang_expr::Value;
-use lang_text::json::Object;
+use lang_text::json::{Object, quoted};
 use lang_text::problem::{Locale, Problem};
 
 /// The first of these that take no more than about so many bytes.
@@ -77,17 +77,24 @@ pub fn value(value: &Value) -> Object {
         .text("value", &shown(value))
 }
 
-/// Breakpoints with their numbers, and how often each was hit, as a member of an object: those after a number.
-pub fn breakpoints(session: &mut Session, after: u32, told: Object) -> Object {
-    let debugger = session.debugger();
-    let points = || {
-        let points = debugger.breakpoints();
-        points.filter(move |(number, ..)| *number > after)
-    };
-    let all = points().count();
-    let points = points().map(breakpoint);
-    let points = bounded(points, limits::TOLD_VARIABLES_BYTES);
-    listed(told, "breakpoints", (points, all))
+/// Lines that breakpoints have written, and how many were lost; nothing if there are none.
+pub fn log((lines, lost): (Vec<String>, u32)) -> Option<String> {
+    if lines.is_empty() && lost == 0 {
+        return None;
+    }
+    let all = lines.len();
+    let lines = lines.iter();
+    let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
+    let told = bounded(lines, limits::TOLD_LINES_BYTES);
+    let lost = lost as usize + all - told.len();
+    Some(object().list("log", told).plain("lost", lost).done())
+}
+
+/// Breakpoints with their numbers, and how often each was hit: those after a number.
+pub fn breakpoints(points: &Points, after: u32) -> Object {
+    let points = || points.all().filter(move |(number, ..)| *number > after);
+    let told = bounded(points().map(breakpoint), limits::TOLD_VARIABLES_BYTES);
+    listed(object(), "breakpoints", (told, points().count()))
 }
 
 fn breakpoint((number, point, hits): (u32, &Breakpoint, u32)) -> String {
@@ -112,14 +119,27 @@ pub fn problems(problems: &[Problem], locale: Locale) -> String {
 }
 
 fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
-    let mut told = object();
-    told = match &stop.reason {
+    let mut told = reason(&stop.reason, locale, |node| place(machine, node));
+    if let Some(thread) = stop.thread {
+        told = told.plain("thread", thread);
+        told = told.text("name", machine.thread_name(thread).unwrap_or_default());
+    }
+    if let Some(node) = stop.node {
+        told = told.plain("at", place(machine, node));
+    }
+    told.done()
+}
+
+/// Why a program is stopped; `place` tells of a block.
+pub fn reason(reason: &Reason, locale: Locale, place: impl FnOnce(Node) -> String) -> Object {
+    let told = object();
+    match reason {
         Reason::Pause => told.text("reason", "pause"),
         Reason::Step => told.text("reason", "step"),
         Reason::ThreadEnded => told.text("reason", "thread ended"),
         Reason::Breakpoint(number) => told.text("reason", "breakpoint").plain("number", number),
         Reason::Changed(change) => {
-            told = told
+            let mut told = told
                 .text("reason", "change")
                 .plain("number", change.number)
                 .text("variable", &change.variable);
@@ -129,7 +149,7 @@ fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
                 }
             }
             match change.by {
-                Some(node) => told.plain("by", place(machine, node)),
+                Some(node) => told.plain("by", place(node)),
                 None => told,
             }
         }
@@ -142,15 +162,7 @@ fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
             .text("text", &problem.in_locale(locale)),
         Reason::Oldest => told.text("reason", "oldest"),
         Reason::Past => told.text("reason", "past"),
-    };
-    if let Some(thread) = stop.thread {
-        told = told.plain("thread", thread);
-        told = told.text("name", machine.thread_name(thread).unwrap_or_default());
     }
-    if let Some(node) = stop.node {
-        told = told.plain("at", place(machine, node));
-    }
-    told.done()
 }
 
 fn thread(machine: &Machine, view: &ThreadView<'_>) -> String {
@@ -205,7 +217,7 @@ fn variables(machine: &Machine) -> Vec<String> {
 }
 
 /// The word of a value's type.
-fn kind(value: &Value) -> &'static str {
+pub fn kind(value: &Value) -> &'static str {
     match value {
         Value::Nil | Value::Unset => "nothing",
         Value::Bool(_) => "bool",

@@ -411,7 +411,7 @@ impl Session {
         trace: &mut dyn Trace,
     ) -> Result<Patched, Refused> {
         let patched = self.machine.patch(version, when_gone, brick, trace)?;
-        self.debugger.bind(self.machine.program());
+        self.debugger.bind(&self.machine);
         self.debugger.look(&self.machine);
         self.past = None;
         self.search = None;

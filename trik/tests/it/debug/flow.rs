@@ -32,6 +32,27 @@ fn a_data_flow_program_is_stopped_stepped_changed_and_ends() {
 }
 
 #[test]
+fn a_change_of_a_variable_stops_it_and_lines_of_breakpoints_do_not() {
+    let board = board();
+    let typed = "watch sum if sum > 6\ndprintf wheels {sum} goes to the wheels, {data} by {gain}\nwatch smu\n\
+        watch sum if data > 3\ndprintf wheels {sum + x}\nc\nc\ninfo breakpoints\nd\nbreak wheels if gain = 3\nq\n";
+    let told = debug(&board, &["debug", "count.flow"], typed).good();
+    for part in [
+        "breakpoint 1 watches sum\n",
+        "(trik) watch smu\nthis cannot be watched: the program has no variable 'smu'; did you mean 'sum'?\n",
+        "(trik) watch sum if data > 3\nthe condition: 1:1 the program has no variable 'data'\n",
+        "the line: 1:8 the program has no variable 'x'\n",
+        "6 goes to the wheels, 6 by 2\n",
+        "breakpoint 1: sum was 6 and is 8, by line 4\n>   7   wheels - Motors\n      wheels.M3 gets 8\n",
+        "8 goes to the wheels, 8 by 2\n",
+        "breakpoint 1: sum was 8 and is 10, by line 4\n",
+        "the condition: 1:1 an expression that is only looked at cannot assign; == compares\n",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+}
+
+#[test]
 fn what_means_no_block_is_told_with_all_that_may_be_given_and_the_nearest_label() {
     let board = board();
     let typed = "break whels\nbreak 99\nuntil gian\nlist weels\nlist wheels\nq\n";
@@ -150,6 +171,45 @@ fn an_editor_stops_at_blocks_of_a_data_flow_program() {
             .bad("stepBack", json!({"threadId": 1}))
             .contains("past")
     );
+    editor.end();
+}
+
+#[test]
+fn an_editor_stops_at_changes_of_variables_and_gets_lines() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch_file(&board, "count.flow", json!({"stopOnEntry": true}));
+    let points = json!({"source": {"sourceReference": 1}, "breakpoints": [
+        {"line": 7, "logMessage": "{data} to the wheels", "condition": "data > 4"},
+        {"line": 7, "logMessage": "{data} of {gian}"},
+    ]});
+    let set = editor.good("setBreakpoints", points);
+    assert_eq!(set["breakpoints"][0]["verified"], true, "{set}");
+    let why = set["breakpoints"][1]["message"].as_str().expect("why");
+    let wanted = "the line: 1:12 the program has no variable 'gian'; did you mean 'gain'?";
+    assert_eq!(why, wanted);
+    let points = json!({"breakpoints": [
+        {"dataId": "sum", "accessType": "write", "condition": "sum > 7"},
+        {"dataId": "smu"}, {"dataId": "gain", "hitCondition": ">= 2"},
+    ]});
+    let set = editor.good("setDataBreakpoints", points);
+    let verified = set["breakpoints"].as_array().expect("all").iter();
+    let verified: Vec<bool> = verified.map(|one| one["verified"] == true).collect();
+    assert_eq!(verified, [true, false, true], "{set}");
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    editor.good("continue", json!({"threadId": 1}));
+    let stopped = editor.event("stopped");
+    assert_eq!(stopped["reason"], "data breakpoint");
+    assert_eq!(stopped["text"], "sum was 6 and is 8", "{stopped}");
+    // Before the token that goes to the wheels, whose line was written for the one before.
+    assert_eq!(editor.line(&stopped), 7);
+    assert_eq!(editor.event("output")["output"], "6 to the wheels\n");
+    let info = editor.good(
+        "dataBreakpointInfo",
+        json!({"variablesReference": 1, "name": "sum"}),
+    );
+    assert_eq!(info["dataId"], "sum", "{info}");
     editor.end();
 }
 

@@ -153,6 +153,16 @@ fn a_data_flow_program_is_changed_watched_and_stopped_while_it_runs() {
     let next = trik(&["step"]);
     assert_eq!(next.code(), 0, "{}", next.stderr);
     assert!(next.stdout.contains("turn.I0 gets "), "{}", next.stdout);
+    let changed = trik(&["break", "n", "--change", "--file", &file]);
+    assert_eq!(changed.code(), 0, "{}", changed.stderr);
+    assert!(changed.stdout.contains(": n was "), "{}", changed.stdout);
+    let none = trik(&["break", "powr", "--change"]);
+    assert_eq!(none.code(), 1);
+    assert!(
+        none.stderr.contains("did you mean 'power'?"),
+        "{}",
+        none.stderr
+    );
     assert_eq!(trik(&["continue"]).code(), 0);
     eventually("it turns again", || turns(&reachable, 4));
     let refused = trik(&["set", "pwer=1"]);
@@ -176,13 +186,17 @@ fn a_data_flow_program_is_debugged_in_one_talk() {
     let file = home.0.file("turn.flow", TURN);
     let file = file.to_str().expect("a name in UTF-8");
     let mut command = home.command(&["debug", file, "--robot", reachable.ip()]);
-    let typed = "break wheels\nc\nset power=30\nc\nprint power\nreload\nrn\nbreak nowhere\nq\n";
+    let typed = "break wheels\ndprintf wheels power is {power}\nc\nset power=30\nc\nprint power\nreload\nrn\nbreak nowhere\n\
+        delete\nwatch n if n > 20\nc\nq\n";
     let said = harness::tools::run(&mut command, typed.as_bytes()).good();
     for told in [
         "before the first block",
         "wheels.M3 gets 20",
         "wheels.M3 gets 30",
         "(trik) print power\n30\n",
+        "power is 20\n",
+        "power is 30\n",
+        "n was 20 and is 21, by line ",
         "changed: 4 blocks kept, 0 new, 0 gone",
         "the past of a data-flow program is not kept",
     ] {
