@@ -1,9 +1,9 @@
 //! A debugger's desk for programs of data flow: orders come in as texts, what they do goes out as JSON.
 //!
-//! Owns what each order does to a program of this language, and what is told: variables, the last token of each port, and
-//! tokens that wait. The words of orders and the form of answers are those of `lang_diagram::debug` and
-//! `docs/protocol.md`. The owner of the desk gives it the robot and the clock, carries the texts, and decides what motors do
-//! at a stop. Knows no transport, no clients and no files.
+//! Owns what each order does to a program of this language and to a look at its past, and what is told: variables, the
+//! last token of each port, and tokens that wait. The words of orders and the form of answers are those of
+//! `lang_diagram::debug` and `docs/protocol.md`. The owner of the desk gives it the robot and the clock, carries the texts,
+//! and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 mod report;
 #[cfg(test)]
@@ -17,19 +17,27 @@ use crate::machine::stops::Step;
 use crate::machine::trace::Trace;
 use crate::program::{NodeId, Target};
 use lang_diagram::brick::{Brick, Command};
+use lang_diagram::debug::answers::Noting;
 use lang_diagram::debug::desk::Refused as Common;
+use lang_diagram::debug::hindsight::{Hindsight, Present};
 use lang_diagram::debug::order::Order;
-use lang_diagram::debug::{Breakpoint, NoBreakpoint, Step as Walk, report as shared};
+use lang_diagram::debug::{
+    Back, Breakpoint, NoBack, NoBreakpoint, NotNow, Step as Walk, report as shared,
+};
 use lang_diagram::machine::Status;
 use lang_expr::Value;
 use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem, Words};
+use report::Ports;
 use std::collections::BTreeMap;
 
 /// A program with its debugger, for people elsewhere.
 #[derive(Clone, Debug)]
 pub struct Desk {
     machine: Machine,
+    hindsight: Hindsight<Machine>,
+    /// How much memory the past may take.
+    history_bytes: usize,
     locale: Locale,
     tap: Tap,
     is_attached: bool,
@@ -96,6 +104,8 @@ enum Announcement {
     /// Nothing is to be told.
     Detached,
     Runs,
+    /// A search through the past goes on.
+    Searches,
     Stopped,
     Ended,
 }
@@ -152,9 +162,11 @@ impl Trace for Both<'_> {
 
 impl Desk {
     /// For a program to which no debugger is attached yet.
-    pub fn new(machine: Machine, locale: Locale) -> Self {
+    pub fn new(machine: Machine, locale: Locale, history_bytes: usize) -> Self {
         Self {
             machine,
+            hindsight: Hindsight::default(),
+            history_bytes,
             locale,
             tap: Tap::default(),
             is_attached: false,
@@ -163,7 +175,7 @@ impl Desk {
         }
     }
 
-    /// The program.
+    /// The program as it is, also while a client looks at its past.
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
@@ -178,20 +190,50 @@ impl Desk {
         self.motors_rest && self.is_stopped()
     }
 
+    /// Attaches a debugger; the past is kept from now on.
+    pub fn attach(&mut self) {
+        if !self.is_attached {
+            self.is_attached = true;
+            self.hindsight.keep(self.history_bytes);
+            self.machine.set_kept(true);
+        }
+    }
+
+    /// Goes on with a search through the past; whether there is more of it.
+    pub fn search_on(&mut self) -> bool {
+        self.hindsight.search_on(self.machine.points())
+    }
+
     /// The program stops before its first instant.
     pub fn stop_first(&mut self) {
-        self.is_attached = true;
+        self.attach();
         self.tap.listen(0);
         self.machine.pause();
     }
 
-    /// Runs what is due at a moment of the caller's clock, in milliseconds.
+    /// Runs what is due at a moment of the caller's clock, in milliseconds; a program that is stopped goes on with a search
+    /// through its past.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Status {
+        self.search_on();
+        let machine = &mut self.machine;
         let mut both = Both {
             tap: &mut self.tap,
             other: trace,
         };
-        self.machine.step(now, brick, &mut both)
+        if !self.hindsight.is_kept() || !machine.runs_next() {
+            return machine.step(now, brick, &mut both);
+        }
+        let begins = machine.begins(now);
+        let Some(notes) = self.hindsight.begin(machine, begins, machine.reached()) else {
+            return machine.step(now, brick, &mut both);
+        };
+        let mut noting = Noting {
+            robot: brick,
+            notes,
+        };
+        let status = machine.step(now, &mut noting, &mut both);
+        self.hindsight.end(machine.stopped().is_none(), []);
+        status
     }
 
     /// Ends the program from outside.
@@ -209,6 +251,8 @@ impl Desk {
         brick: &mut dyn Brick,
     ) -> Result<Patched, NoVersion> {
         let patched = self.machine.patch(version, brick)?;
+        self.hindsight.to_present();
+        self.hindsight.changed();
         // Nodes have other numbers now.
         self.tap.ports.clear();
         self.tell_again();
@@ -221,6 +265,7 @@ impl Desk {
     /// What is wrong with either.
     pub fn assign(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
         self.machine.assign_aside(name, text)?;
+        self.hindsight.changed();
         self.tell_again();
         Ok(())
     }
@@ -259,6 +304,7 @@ impl Desk {
         let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match (self.is_attached, self.machine.status()) {
             (false, _) => Announcement::Detached,
+            (true, _) if self.hindsight.is_searching() => Announcement::Searches,
             (true, Status::Ended { .. }) => Announcement::Ended,
             (true, Status::Running) if self.is_stopped() => Announcement::Stopped,
             (true, Status::Running) => Announcement::Runs,
@@ -271,11 +317,32 @@ impl Desk {
     }
 
     fn state(&self) -> String {
-        report::state(
-            &self.machine,
-            (self.is_attached, &self.tap.ports),
-            self.locale,
-        )
+        let (machine, stop) = match self.hindsight.shown() {
+            Some((machine, stop)) => (machine, Some(stop)),
+            None => (&self.machine, self.machine.stopped()),
+        };
+        let word = match (self.machine.status(), self.hindsight.is_past()) {
+            _ if self.hindsight.is_searching() => "searching",
+            (_, true) => "past",
+            (Status::Ended { .. }, false) => "ended",
+            (Status::Running, false) if self.is_stopped() => "stopped",
+            (Status::Running, false) => "running",
+        };
+        // What ports gave is known of the present alone.
+        let none = Ports::new();
+        let told = report::State {
+            word,
+            is_attached: self.is_attached,
+            status: self.machine.status(),
+            machine,
+            stop,
+            ports: match self.hindsight.is_past() {
+                true => &none,
+                false => &self.tap.ports,
+            },
+            kept: self.hindsight.kept(),
+        };
+        report::state(&told, self.locale)
     }
 
     fn explained(&self, why: &Refused) -> String {
@@ -286,40 +353,31 @@ impl Desk {
     }
 
     fn carry_out(&mut self, order: &Order) -> Result<Object, Refused> {
-        if order.is_for_debugger() && !self.is_attached {
-            return Err(Common::NotAttached.into());
-        }
+        self.admit(order)?;
         let machine = &mut self.machine;
         match order {
-            Order::Attach => self.is_attached = true,
+            Order::Attach => self.attach(),
             Order::Detach => self.detach(),
             Order::Look => {}
+            // It has ended a search, which is all.
+            Order::Pause if self.told == Announcement::Searches => {}
             Order::Pause => {
                 Self::must_run(machine)?;
                 machine.pause();
             }
-            Order::Continue => self.go_on(Machine::go_on)?,
+            Order::Continue => self.go_on(None, Machine::go_on)?,
             Order::Step(_, Some(_)) | Order::Hold(_) | Order::Release(_) => {
                 return Err(Refused::Cannot(words::no_threads()));
             }
-            Order::Step(Walk::Into | Walk::Over, None) => {
-                self.go_on(|machine| machine.walk(Step::Reaction))?;
+            Order::Step(step @ (Walk::Into | Walk::Over), None) => {
+                self.go_on(Some(*step), |machine| machine.walk(Step::Reaction))?;
             }
-            Order::Step(Walk::Out, None) => self.go_on(|machine| machine.walk(Step::Instant))?,
-            Order::Until(block) => {
-                Self::must_run(machine)?;
-                machine.add_point(Breakpoint {
-                    is_once: true,
-                    ..Breakpoint::before(block.clone())
-                })?;
-                if machine.stopped().is_some() {
-                    machine.go_on();
-                }
-                self.tell_again();
+            Order::Step(Walk::Out, None) => {
+                self.go_on(Some(Walk::Out), |machine| machine.walk(Step::Instant))?;
             }
-            Order::Back(_) => return Err(Refused::Cannot(words::no_past())),
-            // It is always there.
-            Order::Present => {}
+            Order::Until(block) => self.until(block)?,
+            Order::Back(how) => self.back(*how)?,
+            Order::Present => self.hindsight.to_present(),
             Order::Break(point) => {
                 Self::must_run(machine)?;
                 let number = machine.add_point(point.clone())?;
@@ -340,13 +398,21 @@ impl Desk {
                 self.motors_rest = *rest;
                 return Ok(report::object());
             }
+            Order::Set(..) if self.hindsight.is_past() => {
+                return Err(Common::NotNow(NotNow::Past).into());
+            }
             Order::Set(name, text) => {
                 self.assign(name, text).map_err(Common::Expression)?;
                 let value = self.machine.value_of(name);
                 return Ok(value.map_or_else(report::object, |value| shared::value(&value)));
             }
             Order::Evaluate(text) => {
-                let value = machine.evaluate_aside(text).map_err(Common::Expression)?;
+                let value = match self.hindsight.shown() {
+                    // Looking at the past changes nothing in it.
+                    Some((machine, _)) => machine.clone().evaluate_aside(text),
+                    None => machine.evaluate_aside(text),
+                };
+                let value = value.map_err(Common::Expression)?;
                 return Ok(shared::value(&value));
             }
         }
@@ -354,8 +420,25 @@ impl Desk {
         Ok(report::object().plain("program", self.state()))
     }
 
-    /// Lets a program go on that is stopped.
-    fn go_on(&mut self, how: impl FnOnce(&mut Machine)) -> Result<(), Refused> {
+    /// Whether an order can be carried out now; one that moves the program ends a search.
+    fn admit(&mut self, order: &Order) -> Result<(), Refused> {
+        if order.is_for_debugger() && !self.is_attached {
+            return Err(Common::NotAttached.into());
+        }
+        if order.is_for_control() && self.hindsight.give_up_search() {
+            self.told = Announcement::Searches;
+        }
+        Ok(())
+    }
+
+    /// Lets a program go on that is stopped, or a look at its past by such a step.
+    fn go_on(&mut self, step: Option<Walk>, how: impl FnOnce(&mut Machine)) -> Result<(), Refused> {
+        if self.hindsight.is_past() {
+            let present = Self::present(&self.machine);
+            self.hindsight.begin_forth(step, &present);
+            self.search();
+            return Ok(());
+        }
         Self::must_run(&self.machine)?;
         if !self.is_stopped() {
             return Err(Common::NotStopped.into());
@@ -363,6 +446,49 @@ impl Desk {
         how(&mut self.machine);
         self.tell_again();
         Ok(())
+    }
+
+    fn until(&mut self, block: &str) -> Result<(), Refused> {
+        Self::must_run(&self.machine)?;
+        if self.hindsight.is_past() {
+            return Err(Common::NotNow(NotNow::Past).into());
+        }
+        self.machine.add_point(Breakpoint {
+            is_once: true,
+            ..Breakpoint::before(block)
+        })?;
+        if self.is_stopped() {
+            self.machine.go_on();
+        }
+        self.tell_again();
+        Ok(())
+    }
+
+    fn back(&mut self, how: Back) -> Result<(), Refused> {
+        if self.machine.status() == Status::Running && !self.is_stopped() {
+            return Err(Common::Back(NoBack::Runs).into());
+        }
+        let present = Self::present(&self.machine);
+        let begun = self.hindsight.begin_back(how, &present);
+        begun.map_err(Common::Back)?;
+        self.search();
+        Ok(())
+    }
+
+    /// A search has begun. A short one is done at once; of a longer one the answer says that it goes on, and its end is told
+    /// like a stop.
+    fn search(&mut self) {
+        if self.search_on() {
+            self.told = Announcement::Searches;
+        }
+    }
+
+    fn present(machine: &Machine) -> Present<'_, Machine> {
+        Present {
+            machine,
+            at: machine.moment(),
+            stop: machine.stopped(),
+        }
     }
 
     fn must_run(machine: &Machine) -> Result<(), Refused> {
@@ -375,6 +501,8 @@ impl Desk {
     fn detach(&mut self) {
         self.is_attached = false;
         self.motors_rest = true;
+        self.hindsight = Hindsight::default();
+        self.machine.set_kept(false);
         self.machine.let_go();
     }
 }

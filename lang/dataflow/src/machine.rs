@@ -6,6 +6,7 @@
 //! gives both. The same program with the same readings does the same.
 
 mod act;
+mod again;
 mod aside;
 mod draw;
 mod evaluate;
@@ -207,24 +208,19 @@ impl Machine {
 
     /// Delivers tokens until none is on its way.
     fn tokens(&mut self, env: &mut Env<'_>) -> Result<(), Halt> {
-        while let Some(next) = self.deliveries.front() {
+        loop {
+            if self.stops.is_armed() && self.stops_here(env.trace) {
+                return Err(Halt::Stopped);
+            }
             // A number is read where it lies: moved on right after it was written, it would have to wait for that.
-            if let (target, Value::Float(number)) = *next
-                && !self.stops.is_armed()
-            {
+            if let Some(&(target, Value::Float(number))) = self.deliveries.front() {
                 self.deliveries.pop_front();
                 self.deliver(target, Value::Float(number), env)?;
             } else if let Some((target, value)) = self.deliveries.pop_front() {
-                if self.stops.is_armed() && self.stops_before(target, &value) {
-                    self.deliveries.push_front((target, value));
-                    return Err(Halt::Stopped);
-                }
                 self.deliver(target, value, env)?;
+            } else {
+                return Ok(());
             }
-        }
-        match self.stops.is_armed() && self.stops_after() {
-            true => Err(Halt::Stopped),
-            false => Ok(()),
         }
     }
 

@@ -14,8 +14,10 @@ use crate::program::{NOWHERE, Node};
 use lang_expr::Value;
 use lang_text::problem::{Problem, Severity};
 
-mod answers;
+pub mod again;
+pub mod answers;
 pub mod desk;
+pub mod hindsight;
 mod history;
 pub mod order;
 mod past;
@@ -26,7 +28,7 @@ mod session;
 mod tests;
 mod words;
 
-use history::Position;
+pub use history::Position;
 pub use past::{Back, NoBack};
 pub use points::{Breakpoint, NoBreakpoint, Points, Spot, Subject};
 pub use session::{NotNow, Phase, Session};
@@ -233,6 +235,15 @@ impl Debugger {
             step,
             depth: machine.depth(thread),
         });
+    }
+
+    /// The moment at which the program is.
+    fn present(&self) -> Position {
+        match &self.stop {
+            // It was counted when the thread was about to enter it.
+            Some(stop) if stop.is_before_block() => self.entered.saturating_sub(1),
+            Some(_) | None => self.entered,
+        }
     }
 
     /// The stop at which the machine is held, until it goes on.

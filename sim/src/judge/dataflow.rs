@@ -10,6 +10,7 @@ use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::trace::{Deaf, Trace};
 use lang_dataflow::program::{NodeId, Program as Lowered};
 use lang_diagram::brick::Brick;
+use lang_diagram::limits::HISTORY_BYTES;
 use lang_diagram::machine::Status;
 use lang_text::problem::{Locale, Problem};
 use std::rc::Rc;
@@ -35,7 +36,7 @@ impl Dataflow {
     /// Before its first instant. `locale` is that of a debugger, if one comes.
     pub fn new(program: Rc<Lowered>, locale: Locale) -> Self {
         Self {
-            desk: Desk::new(Machine::new(program), locale),
+            desk: Desk::new(Machine::new(program), locale, HISTORY_BYTES),
             last: Last::default(),
         }
     }

@@ -74,9 +74,11 @@ impl Debugged {
         Self::of(Debuggee::Diagram(Box::new(desk)))
     }
 
-    /// A data-flow program before its first instant. Its past is not kept.
+    /// A data-flow program before its first instant. The past is kept.
     pub fn flow(program: Rc<Flow>, locale: Locale) -> Self {
-        Self::of(Debuggee::Flow(Box::new(Dataflow::new(program, locale))))
+        let mut flow = Dataflow::new(program, locale);
+        flow.desk().attach();
+        Self::of(Debuggee::Flow(Box::new(flow)))
     }
 
     fn of(program: Debuggee) -> Self {
@@ -108,15 +110,7 @@ impl Debugged {
     pub fn search_on(&mut self) -> bool {
         match &mut self.program {
             Debuggee::Diagram(desk) => desk.session().search_on(),
-            Debuggee::Flow(_) => false,
-        }
-    }
-
-    /// Whether its past is kept.
-    pub fn keeps_past(&self) -> bool {
-        match &self.program {
-            Debuggee::Diagram(_) => true,
-            Debuggee::Flow(_) => false,
+            Debuggee::Flow(flow) => flow.desk().search_on(),
         }
     }
 
@@ -292,7 +286,7 @@ pub fn order(trial: &mut Trial<'_>, program: &mut Debugged, tag: u32, text: &str
     }
 }
 
-/// The same when the run is over: the program can be looked at, and its past if that is kept.
+/// The same when the run is over: the program can be looked at, and its past.
 pub fn order_after(program: &mut Debugged, tag: u32, text: &str) -> String {
     let now = program.now();
     program.order((tag, text), now, &mut Nobody)

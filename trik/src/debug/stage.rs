@@ -268,7 +268,7 @@ impl Target for Stage<'_> {
     fn close(&mut self) {}
 
     fn keeps_past(&self) -> bool {
-        self.program.keeps_past()
+        true
     }
 
     fn scene(&self, ms: u64) -> Option<String> {

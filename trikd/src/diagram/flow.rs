@@ -78,7 +78,11 @@ pub(super) fn run(
     host: &Host,
 ) -> Outcome {
     let mut flow = Flow {
-        desk: Desk::new(Machine::new(program), watch.locale()),
+        desk: Desk::new(
+            Machine::new(program),
+            watch.locale(),
+            limits::DEBUG_HISTORY_BYTES,
+        ),
         motors: Motors::default(),
         warned: 0,
         was_stopped: false,

@@ -46,26 +46,32 @@ fn listed<T>(
     }
 }
 
-/// Where a program is.
-pub(super) fn state(
-    machine: &Machine,
-    (is_attached, ports): (bool, &Ports),
-    locale: Locale,
-) -> String {
-    let status = machine.status();
-    let word = match (status, machine.stopped()) {
-        (Status::Ended { .. }, _) => "ended",
-        (Status::Running, Some(_)) => "stopped",
-        (Status::Running, None) => "running",
-    };
+/// Where a program is, or was.
+pub(super) struct State<'a> {
+    /// The word of its state.
+    pub word: &'static str,
+    pub is_attached: bool,
+    /// Whether it runs, also while somebody looks at its past.
+    pub status: Status,
+    pub machine: &'a Machine,
+    /// Where that is stopped.
+    pub stop: Option<&'a Stop>,
+    pub ports: &'a Ports,
+    /// From when on its past is kept, and in how many bytes.
+    pub kept: Option<(u32, usize)>,
+}
+
+/// Tells where a program is.
+pub(super) fn state(state: &State<'_>, locale: Locale) -> String {
+    let machine = state.machine;
     let mut told = object()
-        .text("state", word)
+        .text("state", state.word)
         .plain("ms", machine.now())
-        .plain("attached", is_attached);
-    if let Status::Ended { with_errors, .. } = status {
+        .plain("attached", state.is_attached);
+    if let Status::Ended { with_errors, .. } = state.status {
         told = told.plain("with_errors", with_errors);
     }
-    if let Some(stop) = machine.stopped() {
+    if let Some(stop) = state.stop {
         told = told.plain("stop", stopped(machine, stop, locale));
     }
     told = told.list("threads", []);
@@ -74,18 +80,27 @@ pub(super) fn state(
         told.text("value", &held.brief()).done()
     });
     let program = machine.program();
-    told = listed(told, "ports", ports.iter(), |(&(node, port), seen)| {
-        let told = place(program, Target { node, port });
-        let told = told
-            .text("type", seen.kind)
-            .text("value", &seen.last.brief());
-        told.plain("count", seen.count).done()
-    });
-    listed(told, "waiting", waiting(machine), |(at, count, lost)| {
+    told = listed(
+        told,
+        "ports",
+        state.ports.iter(),
+        |(&(node, port), seen)| {
+            let told = place(program, Target { node, port });
+            let told = told
+                .text("type", seen.kind)
+                .text("value", &seen.last.brief());
+            told.plain("count", seen.count).done()
+        },
+    );
+    told = listed(told, "waiting", waiting(machine), |(at, count, lost)| {
         let told = place(program, at).plain("count", count);
         told.plain("lost", lost).done()
-    })
-    .done()
+    });
+    if let Some((from_ms, bytes)) = state.kept {
+        let kept = object().plain("from_ms", from_ms).plain("bytes", bytes);
+        told = told.plain("kept", kept.done());
+    }
+    told.done()
 }
 
 /// Ports at which tokens wait or were lost, and how many.

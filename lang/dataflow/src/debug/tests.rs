@@ -1,6 +1,7 @@
 //! Programs under a debugger.
 
 mod changes;
+mod past;
 mod points;
 
 use super::*;
@@ -8,6 +9,7 @@ use crate::check::check;
 use crate::machine::fixtures::{diagram, project};
 use crate::machine::trace::Deaf;
 use crate::project::{DiagramKind, Project};
+use lang_diagram::limits::HISTORY_BYTES;
 use lang_diagram::ports::Port;
 use std::rc::Rc;
 
@@ -43,7 +45,11 @@ fn of(text: &str) -> Project {
 fn desk(text: &str) -> Desk {
     let checked = check(&of(text));
     assert!(!checked.has_errors(), "{:?}", checked.problems);
-    Desk::new(Machine::new(Rc::new(checked.program)), Locale::English)
+    Desk::new(
+        Machine::new(Rc::new(checked.program)),
+        Locale::English,
+        HISTORY_BYTES,
+    )
 }
 
 fn version(text: &str) -> Version {
@@ -188,7 +194,7 @@ fn what_cannot_be_done_is_refused_with_a_reason() {
     told(&mut desk, "attach");
     for (order, why) in [
         ("continue", "not stopped"),
-        ("back", "is not kept"),
+        ("back", "pause it first"),
         ("hold main", "no threads"),
         ("break qrm:/main/Z", "no such block"),
         ("break qrm:/main/A", "stop at the block after it"),

@@ -11,13 +11,6 @@ pub(super) fn no_threads() -> Words {
     )
 }
 
-pub(super) fn no_past() -> Words {
-    Words::new(
-        "the past of a data-flow program is not kept: stop earlier, with a breakpoint",
-        "прошлое потоковой программы не хранится: остановите её раньше, точкой останова",
-    )
-}
-
 pub(super) fn errors_end() -> Words {
     Words::new(
         "an error ends a data-flow program: stop before the block that it names, with a condition on data",

@@ -5,9 +5,10 @@
 //! done only when the instant is over. Knows no orders and no words of a protocol.
 
 use super::Machine;
-use super::subject::Here;
+use super::subject::{Here, Texts};
+use super::trace::Trace;
 use crate::program::{NodeId, Target};
-use lang_diagram::debug::{Breakpoint, NoBreakpoint, Points, Reason};
+use lang_diagram::debug::{Breakpoint, NoBreakpoint, Points, Position, Reason};
 use lang_expr::Value;
 
 /// A program that is stopped.
@@ -47,6 +48,12 @@ pub(super) struct Stops {
     stopped: Option<Stop>,
     /// The token before which it was stopped goes on.
     may_pass: bool,
+    /// Tokens so far before which a block was about to react.
+    reached: Position,
+    /// Its past is kept, so that each token is counted.
+    is_kept: bool,
+    /// It is a copy that is run again: only the trace holds it.
+    is_again: bool,
     /// The block that has reacted since variables were looked at.
     by: Option<NodeId>,
 }
@@ -58,7 +65,7 @@ impl Stops {
             Wish::None | Wish::Pause => false,
             Wish::Step | Wish::After(_) => true,
         };
-        self.may_pass || steps || !self.points.is_empty()
+        self.is_kept || self.is_again || self.may_pass || steps || !self.points.is_empty()
     }
 
     /// Stops between two instants, if somebody has asked for it.
@@ -124,6 +131,40 @@ impl Machine {
         self.look(None, |points, here| points.add(here, point))
     }
 
+    /// Whether its past is kept.
+    pub fn set_kept(&mut self, is_kept: bool) {
+        self.stops.is_kept = is_kept;
+    }
+
+    /// Whether the next step of the caller runs anything.
+    pub fn runs_next(&self) -> bool {
+        let is_paused = self.stops.wish == Wish::Pause && !self.is_amid;
+        self.stopped().is_none() && self.ended.is_none() && !is_paused
+    }
+
+    /// The moment at which it is: how many tokens came before, to which a block was about to react.
+    pub fn moment(&self) -> Position {
+        let next = self.stopped().and_then(|stop| stop.next.as_ref());
+        // It was counted when it came.
+        let is_counted = next.is_some_and(|(to, _)| self.would_react(*to));
+        self.stops.reached.saturating_sub(is_counted.into())
+    }
+
+    /// How many tokens have come so far to which a block was about to react.
+    pub fn reached(&self) -> Position {
+        self.stops.reached
+    }
+
+    /// A copy that is to be run again.
+    pub(super) fn run_only_again(&mut self) {
+        self.stops = Stops {
+            is_again: true,
+            may_pass: self.stops.may_pass,
+            stopped: self.stops.stopped.take(),
+            ..Stops::default()
+        };
+    }
+
     /// The breakpoints.
     pub fn points(&self) -> &Points {
         &self.stops.points
@@ -147,7 +188,7 @@ impl Machine {
     ) -> T {
         let mut here = Here {
             program: &self.program,
-            formulas: &mut self.formulas,
+            formulas: Texts::Own(&mut self.formulas),
             now: self.now,
             token,
         };
@@ -185,37 +226,38 @@ impl Machine {
         self.firings = old.firings;
     }
 
-    /// Whether the program stops before a token that is the next one.
-    pub(super) fn stops_before(&mut self, to: Target, token: &Value) -> bool {
+    /// Whether the program stops before the next token, or at the end of an instant, whose last reaction may have changed
+    /// a variable.
+    pub(super) fn stops_here(&mut self, trace: &mut dyn Trace) -> bool {
+        let next = self.deliveries.front().cloned();
         let is_passing = std::mem::take(&mut self.stops.may_pass);
-        if !is_passing && let Some(reason) = self.met(to, token) {
-            self.stops.stop(reason, Some((to, token.clone())));
-            return true;
+        let reacts = next.as_ref().is_some_and(|(to, _)| self.would_react(*to));
+        if !(is_passing && next.is_some()) {
+            self.stops.reached += Position::from(reacts);
+            let node = next.as_ref().filter(|_| reacts).map(|(to, _)| to.node);
+            let reason = match self.stops.is_again {
+                true => trace.holds(self, node).then_some(Reason::Past),
+                false => self.met(node, next.as_ref()),
+            };
+            if let Some(reason) = reason {
+                self.stops.stop(reason, next);
+                return true;
+            }
         }
-        self.stops.by = Some(to.node);
+        self.stops.by = next.map(|(to, _)| to.node);
         false
     }
 
-    /// Whether it stops at the end of an instant, whose last reaction may have changed a variable.
-    pub(super) fn stops_after(&mut self) -> bool {
-        match self.changed() {
-            Some(reason) => {
-                self.stops.stop(reason, None);
-                true
-            }
-            None => false,
-        }
-    }
-
-    /// Why it stops before a token.
-    fn met(&mut self, to: Target, token: &Value) -> Option<Reason> {
+    /// Why it stops before a token, which a node will react to.
+    fn met(&mut self, node: Option<NodeId>, next: Option<&(Target, Value)>) -> Option<Reason> {
         // Both have to count their hits.
         let changed = self.changed();
-        if !self.would_react(to) {
+        let Some(node) = node else {
             return changed;
-        }
-        let hit = match self.stops.points.is_marked(to.node) {
-            true => self.look(Some(token), |points, here| points.at_block(here, to.node)),
+        };
+        let token = next.map(|(_, token)| token);
+        let hit = match self.stops.points.is_marked(node) {
+            true => self.look(token, |points, here| points.at_block(here, node)),
             false => None,
         };
         let is_wished = match self.stops.wish {

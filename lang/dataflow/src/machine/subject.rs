@@ -11,23 +11,48 @@ use lang_expr::names::is_own;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Kind, Source, Value, Wanted};
 use lang_text::problem::{Place, Position, Problem, Words};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// Functions that a text cannot have that is only looked at.
 const ACTIVE: [&str; 2] = ["print", "random"];
 
+/// The texts of a program, which change when they are computed.
+pub(super) enum Texts<'a> {
+    /// Those of the program itself.
+    Own(&'a mut Formulas),
+    /// Those of one that must not change: copied when the first of them is computed.
+    Copied(Cow<'a, Formulas>),
+}
+
+impl Texts<'_> {
+    fn get(&self) -> &Formulas {
+        match self {
+            Self::Own(formulas) => formulas,
+            Self::Copied(formulas) => formulas,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut Formulas {
+        match self {
+            Self::Own(formulas) => formulas,
+            Self::Copied(formulas) => formulas.to_mut(),
+        }
+    }
+}
+
 /// A program within an instant or between two.
-pub(super) struct Here<'a> {
-    pub program: &'a Program,
-    pub formulas: &'a mut Formulas,
-    pub now: u32,
+pub struct Here<'a> {
+    pub(super) program: &'a Program,
+    pub(super) formulas: Texts<'a>,
+    pub(super) now: u32,
     /// The token that comes next, which is `data`.
-    pub token: Option<&'a Value>,
+    pub(super) token: Option<&'a Value>,
 }
 
 impl Here<'_> {
     fn kind(&self, name: &str) -> Option<&Kind> {
-        let names = self.formulas.names();
+        let names = self.formulas.get().names();
         names.kind(names.find(name)?)
     }
 
@@ -37,7 +62,7 @@ impl Here<'_> {
             Some(Kind::Variable) | None => !is_own(name),
             Some(Kind::Function(_) | Kind::Sensor(_) | Kind::Constant(_)) => false,
         };
-        let texts = self.formulas.sources().iter().flat_map(Source::names);
+        let texts = self.formulas.get().sources().iter().flat_map(Source::names);
         let assigned = self.program.nodes.iter().flat_map(|node| match &node.op {
             Op::Flow(Flow::Variable { names, .. }) => &names[..],
             Op::Flow(_) | Op::Source(_) | Op::Act(_) => &[],
@@ -80,9 +105,8 @@ impl Here<'_> {
     /// The value of a text; nothing while one of its variables has no value.
     fn computed(&mut self, text: &str, wanted: Wanted) -> Result<Option<Value>, Vec<Problem>> {
         let mut nobody = Nobody::at(self.now);
-        let found = self
-            .formulas
-            .look((text, wanted), self.token, &mut nobody)?;
+        let formulas = self.formulas.get_mut();
+        let found = formulas.look((text, wanted), self.token, &mut nobody)?;
         match nobody.is_asked {
             true => Err(vec![Problem::error(words::asks_the_robot())]),
             false => Ok(found),
@@ -130,7 +154,7 @@ impl Subject for Here<'_> {
         let mut source = Source::with_own_names(text, Wanted::Any, &own);
         if source.tree().root.is_none() {
             // The grammar alone: types come with values.
-            let mut names = self.formulas.names().clone();
+            let mut names = self.formulas.get().names().clone();
             return lang_expr::analyse(&mut source, &mut names)
                 .err()
                 .unwrap_or_default();
@@ -156,7 +180,7 @@ impl Subject for Here<'_> {
     }
 
     fn value_of(&self, name: &str) -> Option<Value> {
-        self.formulas.get(name)
+        self.formulas.get().get(name)
     }
 
     fn holds(&mut self, condition: &str) -> Result<bool, Vec<Problem>> {

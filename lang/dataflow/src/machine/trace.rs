@@ -2,6 +2,7 @@
 //!
 //! Owns the border. Looking changes nothing.
 
+use super::Machine;
 use crate::program::{NodeId, Target};
 use lang_diagram::brick::Command;
 use lang_expr::Value;
@@ -19,6 +20,11 @@ pub trait Trace {
     fn told(&mut self, _now: u32, _command: &Command<'_>) {}
     /// Something goes wrong, which ends the program.
     fn trap(&mut self, _now: u32, _problem: &Problem) {}
+    /// Whether a machine that is run again is held: before the next token on its way, which this node will react to, or
+    /// where none reacts.
+    fn holds(&mut self, _machine: &Machine, _next: Option<NodeId>) -> bool {
+        false
+    }
 }
 
 /// Nobody looks.

@@ -15,19 +15,23 @@ enum Answered {
     Announced(Option<(Port, i32)>),
     Random(i32),
     Mail(Option<Box<str>>),
+    Letter(Option<(Option<i32>, Box<str>)>),
+    Contents(Option<Box<str>>),
     Person(Box<Answer>),
 }
 
 /// The answers of a step in their order.
 #[derive(Clone, Debug, Default, Eq, PartialEq)]
-pub(super) struct Answers(Vec<Answered>);
+pub struct Answers(Vec<Answered>);
 
 impl Answers {
     /// How much memory they take, about.
     pub(super) fn bytes(&self) -> usize {
         let apart = self.0.iter().map(|answered| match answered {
             Answered::Vector(Some(numbers)) => numbers.len() * size_of::<i32>(),
-            Answered::Mail(Some(text)) => text.len(),
+            Answered::Mail(Some(text))
+            | Answered::Letter(Some((_, text)))
+            | Answered::Contents(Some(text)) => text.len(),
             Answered::Person(answer) => match &**answer {
                 Answer::Text(text) => size_of::<Answer>() + text.len(),
                 Answer::Waiting | Answer::Cancelled => size_of::<Answer>(),
@@ -37,16 +41,20 @@ impl Answers {
             | Answered::Locked(_)
             | Answered::Announced(_)
             | Answered::Random(_)
-            | Answered::Mail(None) => 0,
+            | Answered::Mail(None)
+            | Answered::Letter(None)
+            | Answered::Contents(None) => 0,
         });
         self.0.len() * size_of::<Answered>() + apart.sum::<usize>()
     }
 }
 
 /// A robot whose answers are noted.
-pub(super) struct Noting<'a> {
-    pub(super) robot: &'a mut dyn Brick,
-    pub(super) notes: &'a mut Answers,
+pub struct Noting<'a> {
+    /// The robot.
+    pub robot: &'a mut dyn Brick,
+    /// What it answers.
+    pub notes: &'a mut Answers,
 }
 
 impl Noting<'_> {
@@ -101,6 +109,21 @@ impl Brick for Noting<'_> {
     fn mail(&mut self) -> Option<String> {
         let text = self.robot.mail();
         self.note(Answered::Mail(text.as_deref().map(Into::into)));
+        text
+    }
+
+    fn letter(&mut self) -> Option<(Option<i32>, String)> {
+        let letter = self.robot.letter();
+        let noted = letter.as_ref();
+        self.note(Answered::Letter(
+            noted.map(|(sender, text)| (*sender, text.as_str().into())),
+        ));
+        letter
+    }
+
+    fn contents(&mut self, file: &str) -> Option<String> {
+        let text = self.robot.contents(file);
+        self.note(Answered::Contents(text.as_deref().map(Into::into)));
         text
     }
 
@@ -212,6 +235,29 @@ impl Brick for Remembering<'_> {
     fn mail(&mut self) -> Option<String> {
         let text = self.next(|answered| {
             if let Answered::Mail(text) = answered {
+                Some(text.as_deref())
+            } else {
+                None
+            }
+        });
+        text.flatten().map(str::to_owned)
+    }
+
+    fn letter(&mut self) -> Option<(Option<i32>, String)> {
+        let letter = self.next(|answered| {
+            if let Answered::Letter(letter) = answered {
+                Some(letter.as_ref())
+            } else {
+                None
+            }
+        });
+        let (sender, text) = letter.flatten()?;
+        Some((*sender, text.to_string()))
+    }
+
+    fn contents(&mut self, _file: &str) -> Option<String> {
+        let text = self.next(|answered| {
+            if let Answered::Contents(text) = answered {
                 Some(text.as_deref())
             } else {
                 None

@@ -8,23 +8,14 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::rc::Rc;
 
+use super::again::{Again, Asked, Begin};
 use super::answers::{Answers, Remembering};
 use crate::limits;
-use crate::machine::Machine;
-use crate::machine::trace::{Guard, Moment, Trace};
+use crate::machine::trace::Guard;
 use crate::program::Node;
 
 /// A moment: how many blocks were entered before it. At each, a thread is about to enter a block.
-pub(super) type Position = u64;
-
-/// What a step began with.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Begin {
-    /// A step at this time.
-    Step(u32),
-    /// The rest of a step, in which the program was held and changed by a person.
-    Rest,
-}
+pub type Position = u64;
 
 #[derive(Clone, Debug)]
 struct Kept {
@@ -35,8 +26,8 @@ struct Kept {
 
 /// A copy of a program, and what has happened since.
 #[derive(Clone, Debug)]
-struct Segment {
-    start: Machine,
+struct Segment<M> {
+    start: M,
     /// Of the first block that is entered in it.
     first: Position,
     steps: Vec<Kept>,
@@ -48,10 +39,10 @@ struct Segment {
 
 /// The past of a program.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub(super) struct History<M> {
     bytes_max: usize,
     bytes: usize,
-    segments: VecDeque<Segment>,
+    segments: VecDeque<Segment<M>>,
     /// Of the step that has begun and is not done.
     open: Option<Answers>,
     /// Somebody has changed the program: what comes cannot be computed from what was.
@@ -59,9 +50,9 @@ pub(super) struct History {
 }
 
 /// What a search is told of while a part of the past is run again.
-pub(super) trait Look {
+pub(super) trait Look<M> {
     /// A thread is about to enter a block at a position, or none is, and that position is the next.
-    fn sees(&mut self, at: Position, machine: &Machine, entering: Option<(u16, Node)>) -> Seen;
+    fn sees(&mut self, at: Position, machine: &M, entering: Option<(u16, Node)>) -> Seen;
 }
 
 /// What a search says to a moment.
@@ -77,8 +68,8 @@ pub(super) enum Seen {
 
 /// A part of the past that is being run again, and may be left and gone on with.
 #[derive(Clone, Debug)]
-pub(super) struct Rerun {
-    machine: Machine,
+pub(super) struct Rerun<M> {
+    machine: M,
     pub(super) part: usize,
     /// The next moment.
     next: Position,
@@ -87,9 +78,9 @@ pub(super) struct Rerun {
     read: usize,
 }
 
-impl Rerun {
+impl<M> Rerun<M> {
     /// The program where it was left.
-    pub(super) fn machine(&self) -> &Machine {
+    pub(super) fn machine(&self) -> &M {
         &self.machine
     }
 }
@@ -104,9 +95,9 @@ pub(super) enum Ran {
 }
 
 /// What is asked at each moment of a part that is run again: a position and what is entered there.
-type Stops<'a> = &'a mut dyn FnMut(Position, &Machine, Option<(u16, Node)>) -> bool;
+type Stops<'a, M> = &'a mut dyn FnMut(Position, &M, Option<(u16, Node)>) -> bool;
 
-impl History {
+impl<M: Again> History<M> {
     /// Nothing yet, and never more than about so many bytes.
     pub(super) fn new(bytes_max: usize) -> Self {
         Self {
@@ -119,12 +110,7 @@ impl History {
     }
 
     /// A step begins, or goes on after a stop; before the machine does anything. What is noted goes into the answers.
-    pub(super) fn begin(
-        &mut self,
-        machine: &Machine,
-        begin: Begin,
-        next: Position,
-    ) -> &mut Answers {
+    pub(super) fn begin(&mut self, machine: &M, begin: Begin, next: Position) -> &mut Answers {
         if self.open.is_none() || self.is_changed {
             self.close();
             if self.is_changed || self.segments.back().is_none_or(|last| last.is_full(next)) {
@@ -161,7 +147,7 @@ impl History {
 
     /// When the first moment is that is kept, in milliseconds of the program; none if nothing is.
     pub(super) fn first_ms(&self) -> Option<u32> {
-        self.segments.front().map(|segment| segment.start.now())
+        self.segments.front().map(|segment| segment.start.ms())
     }
 
     /// How much memory it takes, about.
@@ -190,9 +176,9 @@ impl History {
         self.thin();
     }
 
-    fn copy(&mut self, machine: &Machine, first: Position) {
+    fn copy(&mut self, machine: &M, first: Position) {
         self.is_changed = false;
-        let weight = machine.weight();
+        let weight = machine.bytes();
         self.segments.push_back(Segment {
             start: machine.clone(),
             first,
@@ -222,10 +208,10 @@ impl History {
     }
 
     /// Begins to run a part again.
-    pub(super) fn rerun_of(&self, part: usize) -> Option<Rerun> {
+    pub(super) fn rerun_of(&self, part: usize) -> Option<Rerun<M>> {
         let segment = self.segments.get(part)?;
         let mut machine = segment.start.clone();
-        machine.set_guarded(true);
+        machine.prepare();
         Some(Rerun {
             machine,
             part,
@@ -238,9 +224,9 @@ impl History {
     /// Runs a part again from where it was left, until it is left again or is through, or until the moment `before`.
     pub(super) fn look_through(
         &self,
-        rerun: &mut Rerun,
+        rerun: &mut Rerun<M>,
         before: Position,
-        look: &mut dyn Look,
+        look: &mut dyn Look<M>,
     ) -> Ran {
         let Some(segment) = self.segments.get(rerun.part) else {
             return Ran::Through;
@@ -264,7 +250,7 @@ impl History {
     }
 
     /// The program at a moment, held before the block that a thread enters there; none if it is not kept.
-    pub(super) fn at(&self, wanted: Position) -> Option<Machine> {
+    pub(super) fn at(&self, wanted: Position) -> Option<M> {
         let at = self
             .segments
             .partition_point(|segment| segment.first <= wanted);
@@ -277,14 +263,14 @@ impl History {
     }
 
     /// The program at a time, between two steps, and how many blocks were entered before; none if it is not kept.
-    pub(super) fn at_time(&self, ms: u32) -> Option<(Position, Machine)> {
+    pub(super) fn at_time(&self, ms: u32) -> Option<(Position, M)> {
         let at = self
             .segments
-            .partition_point(|segment| segment.start.now() <= ms);
+            .partition_point(|segment| segment.start.ms() <= ms);
         let segment = self.segments.get(at.saturating_sub(1))?;
         let mut steps = 0;
         self.rerun(segment, &mut |machine| {
-            let is_within = !machine.is_held() && machine.now() <= ms;
+            let is_within = !machine.is_amid() && machine.ms() <= ms;
             steps += usize::from(is_within);
             is_within
         });
@@ -300,12 +286,12 @@ impl History {
     /// Runs a segment again while each step is followed by another one that is wanted.
     fn rerun(
         &self,
-        segment: &Segment,
-        goes_on: &mut dyn FnMut(&Machine) -> bool,
-    ) -> Option<(Position, Machine)> {
+        segment: &Segment<M>,
+        goes_on: &mut dyn FnMut(&M) -> bool,
+    ) -> Option<(Position, M)> {
         let mut machine = segment.start.clone();
-        machine.set_guarded(true);
-        let mut stops = |_: Position, _: &Machine, _: Option<(u16, Node)>| false;
+        machine.prepare();
+        let mut stops = |_: Position, _: &M, _: Option<(u16, Node)>| false;
         let mut seeker = Seeker {
             next: segment.first,
             until: Position::MAX,
@@ -324,10 +310,7 @@ impl History {
         };
         for kept in segment.steps.iter().take(whole) {
             let mut robot = Remembering::new(&kept.answers);
-            match kept.begin {
-                Begin::Step(now) => machine.step(now, &mut robot, &mut seeker),
-                Begin::Rest => machine.go_on_held(&mut robot, &mut seeker),
-            };
+            machine.run_again(kept.begin, &mut robot, &mut seeker);
             if robot.is_astray || !goes_on(&machine) {
                 break;
             }
@@ -346,8 +329,8 @@ impl History {
         &self,
         segment: usize,
         until: Position,
-        stops: Stops<'_>,
-    ) -> Option<(Position, Machine)> {
+        stops: Stops<'_, M>,
+    ) -> Option<(Position, M)> {
         let mut rerun = self.rerun_of(segment)?;
         let is_held = self.run_on(self.segments.get(segment)?, &mut rerun, until, stops);
         is_held.then(|| (rerun.next - 1, rerun.machine))
@@ -356,10 +339,10 @@ impl History {
     /// The same from where it was left; whether it is held.
     fn run_on(
         &self,
-        segment: &Segment,
-        rerun: &mut Rerun,
+        segment: &Segment<M>,
+        rerun: &mut Rerun<M>,
         until: Position,
-        stops: Stops<'_>,
+        stops: Stops<'_, M>,
     ) -> bool {
         let last = self.segments.back();
         let is_last = last.is_some_and(|last| std::ptr::eq(last, segment));
@@ -377,15 +360,9 @@ impl History {
                 stops,
             };
             let machine = &mut rerun.machine;
-            match (machine.is_held(), kept.begin) {
-                (false, Begin::Step(now)) => machine.step(now, &mut robot, &mut seeker),
-                // It was left in the middle of this step, or was held when the part began.
-                (true, Begin::Step(_) | Begin::Rest) | (false, Begin::Rest) => {
-                    machine.go_on_held(&mut robot, &mut seeker)
-                }
-            };
+            machine.run_again(kept.begin, &mut robot, &mut seeker);
             rerun.next = seeker.next;
-            if rerun.machine.is_held() {
+            if rerun.machine.is_amid() {
                 rerun.read = robot.given();
                 return true;
             }
@@ -399,7 +376,7 @@ impl History {
     }
 }
 
-impl Segment {
+impl<M> Segment<M> {
     /// Copies cost memory, and segments time: a copy comes when running again would take as long as a person sees, and not
     /// before the answers are worth it.
     fn is_full(&self, next: Position) -> bool {
@@ -419,30 +396,26 @@ impl Segment {
 }
 
 /// Finds a moment while a program runs again.
-struct Seeker<'a> {
+struct Seeker<'a, M> {
     /// The next moment.
     next: Position,
     until: Position,
     held: &'a BTreeSet<Position>,
-    stops: Stops<'a>,
+    stops: Stops<'a, M>,
 }
 
-impl Trace for Seeker<'_> {
-    fn guard(&mut self, machine: &Machine, at: Moment) -> Guard {
-        let (thread, node) = match at {
-            Moment::Enters { thread, node } => (thread, node),
-            Moment::Between => {
-                let is_it = self.next < self.until && (self.stops)(self.next, machine, None);
-                return if is_it { Guard::Hold } else { Guard::Go };
-            }
-            Moment::Fails { .. } => return Guard::Go,
-        };
+impl<M> Asked<M> for Seeker<'_, M> {
+    fn asked(&mut self, machine: &M, entering: Option<(u16, Node)>) -> Guard {
+        if entering.is_none() {
+            let is_it = self.next < self.until && (self.stops)(self.next, machine, None);
+            return if is_it { Guard::Hold } else { Guard::Go };
+        }
         let position = self.next;
         self.next += 1;
         if position >= self.until {
             return Guard::Hold;
         }
-        let is_it = (self.stops)(position, machine, Some((thread, node)));
+        let is_it = (self.stops)(position, machine, entering);
         if is_it || self.next == self.until {
             return Guard::Hold;
         }

@@ -3,10 +3,10 @@
 //! Owns the rules of going back: which earlier moment a step back or a run back means, and the search for it, which is done
 //! in pieces so that it can be given up. What is kept is known in `history`.
 
+use super::again::Again;
 use super::history::{History, Look, Position, Ran, Rerun, Seen};
-use super::{Debugger, Reason, Step, Stop, words};
+use super::{Points, Reason, Step, words};
 use crate::limits;
-use crate::machine::Machine;
 use crate::program::Node;
 use lang_expr::Value;
 use lang_text::problem::{Locale, Words};
@@ -52,46 +52,36 @@ impl NoBack {
 
 /// A moment of the past at which somebody stands.
 #[derive(Clone, Debug)]
-pub(super) struct Past {
-    pub(super) machine: Machine,
+pub(super) struct Past<M: Again> {
+    pub(super) machine: M,
     pub(super) at: Position,
-    pub(super) stop: Stop,
+    pub(super) stop: M::Stop,
 }
 
 /// From where somebody goes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct From<'a> {
-    pub(super) machine: &'a Machine,
+#[derive(Debug)]
+pub(super) struct From<'a, M> {
+    pub(super) machine: &'a M,
     pub(super) at: Position,
     /// The thread at which it is stopped.
     pub(super) thread: Option<u16>,
 }
 
-impl Past {
-    fn new(machine: Machine, at: Position, reason: Reason) -> Self {
-        let thread = machine.held_thread();
-        let node = machine.views().find(|view| Some(view.number) == thread);
-        let node = node.map(|view| view.node);
-        Self {
-            machine,
-            at,
-            stop: Stop {
-                reason,
-                thread,
-                node,
-            },
-        }
+impl<M: Again> Past<M> {
+    fn new(machine: M, at: Position, reason: Reason) -> Self {
+        let stop = machine.stop(reason);
+        Self { machine, at, stop }
     }
 }
 
 /// The program at a time, between two steps.
-pub(super) fn at_time(history: &History, ms: u32) -> Option<Past> {
+pub(super) fn at_time<M: Again>(history: &History<M>, ms: u32) -> Option<Past<M>> {
     let (at, machine) = history.at_time(ms)?;
     Some(Past::new(machine, at, Reason::Past))
 }
 
 /// The first moment that is kept.
-pub(super) fn oldest(history: &History) -> Option<Past> {
+pub(super) fn oldest<M: Again>(history: &History<M>) -> Option<Past<M>> {
     let at = history.first();
     Some(Past::new(history.at(at)?, at, Reason::Oldest))
 }
@@ -105,47 +95,39 @@ enum Direction {
 
 /// A search through the past that goes on piece by piece.
 #[derive(Clone, Debug)]
-pub(super) struct Search {
-    /// Steps end there; without one, breakpoints are looked for.
-    step: Option<Ends>,
+pub(super) struct Search<M: Again> {
+    /// A step that ends there; without one, breakpoints are looked for.
+    step: Option<M::Walk>,
     way: Direction,
     after: Option<Position>,
     before: Position,
     /// The part that is looked through, or comes next.
     part: Option<usize>,
     /// Where it was left, and what variables that are watched held there.
-    rerun: Option<Rerun>,
+    rerun: Option<Rerun<M>>,
     held: Vec<Option<Value>>,
     /// The last moment of the part so far that is one.
     found: Option<(Position, Reason)>,
 }
 
-/// Where a step ends: at a moment of this thread with these calls.
-#[derive(Clone, Copy, Debug)]
-struct Ends {
-    thread: Option<u16>,
-    depth: usize,
-    step: Step,
-}
-
 /// What a piece of a search has come to.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant, reason = "pieces are rare")]
-pub(super) enum Piece {
+pub(super) enum Piece<M: Again> {
     /// It has to be looked further.
     More,
     /// The moment that is meant.
-    Found(Past),
+    Found(Past<M>),
     /// There is none in this direction.
     Nothing,
 }
 
-impl Search {
+impl<M: Again> Search<M> {
     /// For the earlier moment to which a step leads, or before which a breakpoint would have stopped.
-    pub(super) fn back(history: &History, from: From<'_>, step: Option<Step>) -> Self {
+    pub(super) fn back(history: &History<M>, from: From<'_, M>, step: Option<Step>) -> Self {
         let last = from.at.checked_sub(1);
         Self {
-            step: step.map(|step| Ends::of(from, step)),
+            step: step.map(|step| from.machine.walk(from.thread, step)),
             way: Direction::Back,
             after: None,
             before: from.at,
@@ -158,8 +140,8 @@ impl Search {
 
     /// For the later one; the present comes at `present`.
     pub(super) fn forth(
-        history: &History,
-        from: From<'_>,
+        history: &History<M>,
+        from: From<'_, M>,
         present: Position,
         step: Option<Step>,
     ) -> Self {
@@ -178,7 +160,7 @@ impl Search {
     }
 
     /// Looks further, for about [`limits::SEARCH_WORK`].
-    pub(super) fn piece(&mut self, history: &History, debugger: &Debugger) -> Piece {
+    pub(super) fn piece(&mut self, history: &History<M>, points: &Points) -> Piece<M> {
         let mut work = 0;
         while work < limits::SEARCH_WORK {
             let Some(part) = self.part else {
@@ -186,7 +168,7 @@ impl Search {
             };
             let begun = self.rerun.take().or_else(|| {
                 let rerun = history.rerun_of(part)?;
-                self.held = debugger.points.watched(&rerun.machine());
+                self.held = points.watched(&rerun.machine().seen());
                 Some(rerun)
             });
             let Some(mut rerun) = begun else {
@@ -197,7 +179,7 @@ impl Search {
             let before = self.before;
             let mut look = Looked {
                 search: self,
-                debugger,
+                points,
                 work: &mut work,
             };
             let ran = history.look_through(&mut rerun, before, &mut look);
@@ -216,7 +198,7 @@ impl Search {
         Piece::More
     }
 
-    fn end(&mut self, history: &History) -> Piece {
+    fn end(&mut self, history: &History<M>) -> Piece<M> {
         let found = self.found.take();
         let past = found.and_then(|(at, reason)| Some(Past::new(history.at(at)?, at, reason)));
         past.map_or(Piece::Nothing, Piece::Found)
@@ -228,31 +210,19 @@ impl Search {
     }
 }
 
-impl Ends {
-    fn of(from: From<'_>, step: Step) -> Self {
-        let depth = from.thread.map_or(0, |thread| from.machine.depth(thread));
-        Self {
-            thread: from.thread,
-            depth,
-            step,
-        }
-    }
-}
-
 /// A search that looks at moments.
-struct Looked<'a> {
-    search: &'a mut Search,
-    debugger: &'a Debugger,
+struct Looked<'a, M: Again> {
+    search: &'a mut Search<M>,
+    points: &'a Points,
     work: &'a mut u64,
 }
 
-impl Look for Looked<'_> {
-    fn sees(&mut self, at: Position, machine: &Machine, entering: Option<(u16, Node)>) -> Seen {
+impl<M: Again> Look<M> for Looked<'_, M> {
+    fn sees(&mut self, at: Position, machine: &M, entering: Option<(u16, Node)>) -> Seen {
         *self.work += 1;
         let reason = match self.search.step {
-            Some(ends) => entering.and_then(|(thread, _)| {
-                let is_it = ends.thread.is_none_or(|wanted| wanted == thread)
-                    && ends.step.ends_at(machine.depth(thread), ends.depth);
+            Some(walk) => entering.and_then(|(thread, _)| {
+                let is_it = machine.is_end(walk, thread);
                 is_it.then_some(Reason::Step)
             }),
             None => self.stops(machine, entering.map(|(_, node)| node)),
@@ -271,18 +241,19 @@ impl Look for Looked<'_> {
     }
 }
 
-impl Looked<'_> {
+impl<M: Again> Looked<'_, M> {
     /// Why a breakpoint would have stopped at a moment.
-    fn stops(&mut self, mut machine: &Machine, node: Option<Node>) -> Option<Reason> {
-        let points = &self.debugger.points;
+    fn stops(&mut self, machine: &M, node: Option<Node>) -> Option<Reason> {
+        let points = self.points;
+        let mut seen = machine.seen();
         if points.has_watches() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        let changed = points.stops_at_changes(&mut machine, &mut self.search.held);
+        let changed = points.stops_at_changes(&mut seen, &mut self.search.held);
         let node = node.filter(|node| points.is_marked(*node));
         if node.is_some() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        changed.or_else(|| points.stops_at(&mut machine, node?))
+        changed.or_else(|| points.stops_at(&mut seen, node?))
     }
 }

@@ -5,9 +5,10 @@
 
 use std::rc::Rc;
 
+use super::again::Begin;
 use super::answers::Noting;
-use super::history::{Begin, History, Position};
-use super::past::{self, Back, From, NoBack, Past, Piece, Search};
+use super::hindsight::{Hindsight, Present};
+use super::past::{Back, NoBack};
 use super::{Breakpoint, Debugger, NoBreakpoint, Step, Stop, report, words};
 use crate::brick::Brick;
 use crate::machine::patch::{Patched, Refused, Version, WhenGone};
@@ -57,11 +58,7 @@ impl NotNow {
 pub struct Session {
     machine: Machine,
     debugger: Debugger,
-    history: Option<History>,
-    /// Where somebody stands who looks at the past.
-    past: Option<Past>,
-    /// A search through the past that goes on.
-    search: Option<Search>,
+    hindsight: Hindsight<Machine>,
     /// Milliseconds of the caller's clock that passed while it was stopped.
     stopped_ms: u32,
     /// When the present stop began, by the caller's clock.
@@ -81,9 +78,7 @@ impl Session {
         Self {
             machine,
             debugger: Debugger::default(),
-            history: None,
-            past: None,
-            search: None,
+            hindsight: Hindsight::default(),
             stopped_ms: 0,
             since: 0,
         }
@@ -106,29 +101,25 @@ impl Session {
             self.release(&name);
         }
         self.debugger.forget();
-        self.history = None;
-        self.past = None;
-        self.search = None;
+        self.hindsight = Hindsight::default();
         self.machine.set_guarded(false);
         self.go_on(now, brick, trace);
     }
 
     /// Keeps the past from now on, in about so many bytes.
     pub fn keep(&mut self, bytes_max: usize) {
-        self.history = Some(History::new(bytes_max));
+        self.hindsight.keep(bytes_max);
     }
 
     /// When the past begins that is kept, in milliseconds of the program, and how many bytes it takes.
     pub fn kept(&self) -> Option<(u32, usize)> {
-        let history = self.history.as_ref()?;
-        Some((history.first_ms()?, history.bytes()))
+        self.hindsight.kept()
     }
 
     /// The machine, to be looked at; in the past the one that was.
     pub fn machine(&self) -> &Machine {
-        self.past
-            .as_ref()
-            .map_or(&self.machine, |past| &past.machine)
+        let shown = self.hindsight.shown();
+        shown.map_or(&self.machine, |(machine, _)| machine)
     }
 
     /// The machine as it is, also while a client looks at its past.
@@ -143,7 +134,7 @@ impl Session {
 
     /// Whether somebody looks at the past.
     pub fn is_past(&self) -> bool {
-        self.past.is_some()
+        self.hindsight.is_past()
     }
 
     /// The debugger, to be told what to do.
@@ -153,8 +144,8 @@ impl Session {
 
     /// Where the program is stopped, in the past if somebody looks at that.
     pub fn stop(&self) -> Option<&Stop> {
-        let past = self.past.as_ref().map(|past| &past.stop);
-        past.or(self.debugger.stop())
+        let shown = self.hindsight.shown();
+        shown.map(|(_, stop)| stop).or(self.debugger.stop())
     }
 
     /// Adds a breakpoint; its number.
@@ -187,8 +178,7 @@ impl Session {
     /// Goes on after a stop, at a moment of the caller's clock: finishes the step in which it was stopped, or stops again.
     /// A client that looks at the past is back in the present after that.
     pub fn go_on(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
-        self.past = None;
-        self.search = None;
+        self.hindsight.to_present();
         if self.debugger.stop().is_some() {
             self.stopped_ms = self
                 .stopped_ms
@@ -224,12 +214,11 @@ impl Session {
             return;
         }
         let next = self.debugger.entered;
-        let Some(history) = &mut self.history else {
+        let Some(notes) = self.hindsight.begin(&self.machine, begin, next) else {
             run(&mut self.machine, brick, &mut self.debugger.trace(trace));
             self.debugger.held_at.clear();
             return;
         };
-        let notes = history.begin(&self.machine, begin, next);
         let mut noting = Noting {
             robot: brick,
             notes,
@@ -239,7 +228,8 @@ impl Session {
             &mut noting,
             &mut self.debugger.trace(trace),
         );
-        history.end(!self.machine.is_held(), self.debugger.held_at.drain(..));
+        let held_at = self.debugger.held_at.drain(..);
+        self.hindsight.end(!self.machine.is_held(), held_at);
     }
 
     /// Goes back, however long the search takes. The program itself stays where it is stopped.
@@ -249,8 +239,8 @@ impl Session {
     pub fn back(&mut self, how: Back) -> Result<&Stop, NoBack> {
         self.begin_back(how)?;
         while self.search_on() {}
-        let past = self.past.as_ref().map(|past| &past.stop);
-        past.ok_or(NoBack::NotKept)
+        let shown = self.hindsight.shown();
+        shown.map(|(_, stop)| stop).ok_or(NoBack::NotKept)
     }
 
     /// Begins to go back; [`Session::search_on`] goes on with it.
@@ -258,32 +248,15 @@ impl Session {
     /// # Errors
     /// [`NoBack`]; then nothing has changed.
     pub fn begin_back(&mut self, how: Back) -> Result<(), NoBack> {
-        let history = self.history.as_ref().ok_or(NoBack::NotKept)?;
-        if self.phase() == Phase::Runs {
+        if self.hindsight.is_kept() && self.phase() == Phase::Runs {
             return Err(NoBack::Runs);
         }
-        let step = match how {
-            Back::To(ms) if ms >= self.machine.now() => return Err(NoBack::NotYet),
-            Back::To(ms) => {
-                let past = past::at_time(history, ms).ok_or(NoBack::NotKept)?;
-                self.search = None;
-                self.past = Some(past);
-                return Ok(());
-            }
-            Back::Step(step) => Some(step),
-            Back::Continue | Back::Oldest => None,
+        let present = Present {
+            machine: &self.machine,
+            at: self.debugger.present(),
+            stop: self.debugger.stop(),
         };
-        if self.here().at <= history.first() {
-            return Err(NoBack::AtOldest);
-        }
-        if how == Back::Oldest {
-            let past = past::oldest(history).ok_or(NoBack::NotKept)?;
-            self.search = None;
-            self.past = Some(past);
-            return Ok(());
-        }
-        self.search = Some(Search::back(history, self.here(), step));
-        Ok(())
+        self.hindsight.begin_back(how, &present)
     }
 
     /// Goes forth in the past, by a step or to the next breakpoint; false: this is the present now.
@@ -295,68 +268,32 @@ impl Session {
 
     /// Begins to go forth in the past; [`Session::search_on`] goes on with it.
     pub fn begin_forth(&mut self, step: Option<Step>) {
-        if let (Some(history), Some(_)) = (&self.history, &self.past) {
-            let search = Search::forth(history, self.here(), self.present(), step);
-            self.search = Some(search);
-        }
+        let present = Present {
+            machine: &self.machine,
+            at: self.debugger.present(),
+            stop: self.debugger.stop(),
+        };
+        self.hindsight.begin_forth(step, &present);
     }
 
     /// Whether a search through the past goes on.
     pub fn is_searching(&self) -> bool {
-        self.search.is_some()
+        self.hindsight.is_searching()
     }
 
     /// Does a piece of a search through the past, in bounded time; whether there is more to do.
     pub fn search_on(&mut self) -> bool {
-        let (Some(history), Some(search)) = (&self.history, &mut self.search) else {
-            return false;
-        };
-        let past = match search.piece(history, &self.debugger) {
-            Piece::More => return true,
-            Piece::Found(past) => Some(past),
-            Piece::Nothing if search.is_back() => past::oldest(history),
-            // What comes next is the present.
-            Piece::Nothing => None,
-        };
-        self.past = past;
-        self.search = None;
-        false
+        self.hindsight.search_on(&self.debugger.points)
     }
 
     /// Ends a search: what is looked at stays where it was begun.
     pub fn give_up_search(&mut self) -> bool {
-        self.search.take().is_some()
+        self.hindsight.give_up_search()
     }
 
     /// Leaves the past.
     pub fn to_present(&mut self) {
-        self.past = None;
-        self.search = None;
-    }
-
-    fn here(&self) -> From<'_> {
-        match &self.past {
-            Some(past) => From {
-                machine: &past.machine,
-                at: past.at,
-                thread: past.stop.thread,
-            },
-            None => From {
-                machine: &self.machine,
-                at: self.present(),
-                thread: self.debugger.stop().and_then(|stop| stop.thread),
-            },
-        }
-    }
-
-    /// The moment at which the program is.
-    fn present(&self) -> Position {
-        let entered = self.debugger.entered;
-        match self.debugger.stop() {
-            // It was counted when the thread was about to enter it.
-            Some(stop) if stop.is_before_block() => entered.saturating_sub(1),
-            Some(_) | None => entered,
-        }
+        self.hindsight.to_present();
     }
 
     /// Holds a thread when it enters its next block, and lets the others go on.
@@ -413,8 +350,7 @@ impl Session {
         let patched = self.machine.patch(version, when_gone, brick, trace)?;
         self.debugger.bind(&self.machine);
         self.debugger.look(&self.machine);
-        self.past = None;
-        self.search = None;
+        self.hindsight.to_present();
         self.changes();
         Ok(patched)
     }
@@ -425,9 +361,7 @@ impl Session {
     }
 
     fn changes(&mut self) {
-        if let Some(history) = &mut self.history {
-            history.changed();
-        }
+        self.hindsight.changed();
     }
 
     fn note(&mut self, now: u32) {

@@ -53,6 +53,28 @@ fn a_change_of_a_variable_stops_it_and_lines_of_breakpoints_do_not() {
 }
 
 #[test]
+fn the_past_of_a_data_flow_program_is_looked_at_and_stays_when_it_has_ended() {
+    let board = board();
+    let typed = "watch sum if sum == 20\nc\nrn\nrs\np sum\nback 450\np sum\nset gain=5\nn\nstart\npresent\n\
+        delete\nbreak wheels if data == 50\nc\ndelete\nc\nrn\np sum\npresent\nq\n";
+    let told = debug(&board, &["debug", "count.flow"], typed).good();
+    for part in [
+        "breakpoint 1: sum was 18 and is 20, by line 4\n",
+        "(trik) rn\npast, 1.00 s: step\n>   4   sum - Text programming: IO0 = sum = gain * I0; sum\n      sum.I0 gets 10\n",
+        "(trik) rs\npast, 0.90 s: step\n>   7   wheels - Motors\n      wheels.M3 gets 18\n(trik) p sum\n18\n",
+        "(trik) p sum\n8\n(trik) set gain=5\nthis is the past: go to the present first\n",
+        "(trik) n\npast, 0.50 s: step\n>   4   sum",
+        "nothing before this is kept\n",
+        "(trik) c\n2.50 s: breakpoint 2\n",
+        "the program has ended at 4.00 s of model time\n",
+        "(trik) rn\npast, 4.00 s: step\n",
+        "(trik) p sum\n80\n",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+}
+
+#[test]
 fn what_means_no_block_is_told_with_all_that_may_be_given_and_the_nearest_label() {
     let board = board();
     let typed = "break whels\nbreak 99\nuntil gian\nlist weels\nlist wheels\nq\n";
@@ -166,11 +188,20 @@ fn an_editor_stops_at_blocks_of_a_data_flow_program() {
     assert_eq!(stopped["text"], "wheels.M3 gets 108");
     editor.good("next", json!({"threadId": 1}));
     editor.event("stopped");
-    assert!(
-        editor
-            .bad("stepBack", json!({"threadId": 1}))
-            .contains("past")
+    // Each step goes back, and the run back to where it was stopped before.
+    editor.good("stepBack", json!({"threadId": 1}));
+    assert_eq!(editor.event("stopped")["text"], "wheels.M3 gets 108");
+    assert_eq!(editor.value("sum"), "108");
+    editor.good("stepBack", json!({"threadId": 1}));
+    assert_eq!(editor.event("stopped")["text"], "sum.I0 gets 4");
+    assert_eq!(editor.value("sum"), "6");
+    editor.good("reverseContinue", json!({"threadId": 1}));
+    let stopped = editor.event("stopped");
+    assert_eq!(
+        (&stopped["reason"], &stopped["text"]),
+        (&json!("breakpoint"), &json!("wheels.M3 gets 6"))
     );
+    assert_eq!(editor.line(&stopped), 7);
     editor.end();
 }
 

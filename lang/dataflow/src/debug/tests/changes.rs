@@ -253,7 +253,11 @@ fn each_call_of_a_subprogram_keeps_its_own_and_a_random_that_repeats_no_more_end
     };
     let checked = check(&whole(outer));
     assert!(!checked.has_errors(), "{:?}", checked.problems);
-    let mut desk = Desk::new(Machine::new(Rc::new(checked.program)), Locale::English);
+    let mut desk = Desk::new(
+        Machine::new(Rc::new(checked.program)),
+        Locale::English,
+        HISTORY_BYTES,
+    );
     let mut robot = Robot::default();
     told(&mut desk, "attach");
     // One id, a block in each call: it stops in both.
