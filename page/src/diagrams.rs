@@ -4,7 +4,8 @@
 //! other program does.
 
 use crate::error::Error;
-use crate::{limits, store};
+use crate::{flows, limits, store};
+use lang_dataflow::read::{Language, language};
 use lang_diagram::blocks::{Content, Property, find};
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
@@ -26,13 +27,19 @@ pub struct Change {
     pub value: String,
 }
 
-/// A diagram as JSON: for each sheet its `name`, whether it is the `main` one, its `picture` in SVG, in which every block is a
-/// group with its `data-id`, and its `blocks` by those ids, each with its properties.
+/// A diagram as JSON: for each sheet its `name`, whether it is the `main` one, whether it is of data `flow`, its `picture` in SVG, in
+/// which every block is a group with its `data-id`, and its `blocks` by those ids, each with its properties.
 ///
 /// # Errors
 /// There is no such program, or it is no diagram that can be read.
 pub fn sheets(folder: &Path, name: &str, locale: Locale) -> Result<Value, Error> {
+    if flows::is_text(name) {
+        return flows::of_text(&store::read(folder, name)?, name, locale);
+    }
     let opened = open(folder, name, locale)?;
+    if language(&opened.save) == Language::Dataflow {
+        return flows::of_save(&opened.save, name, locale);
+    }
     let sheet = |(at, diagram): (usize, &Diagram)| {
         let is_main = opened.project.main == Some(at);
         let blocks = diagram.blocks.iter();
@@ -40,6 +47,7 @@ pub fn sheets(folder: &Path, name: &str, locale: Locale) -> Result<Value, Error>
         json!({
             "name": diagram.name,
             "main": is_main,
+            "flow": false,
             "picture": picture(diagram, locale),
             "blocks": blocks.collect::<Map<_, _>>(),
         })
@@ -109,11 +117,14 @@ pub fn changed(
 
 fn open(folder: &Path, name: &str, locale: Locale) -> Result<Opened, Error> {
     let bytes = store::read(folder, name)?;
-    read(&bytes).map_err(|problems| {
-        let lines = problems.iter().take(limits::MISTAKES_MAX);
-        let lines: Vec<_> = lines.map(|problem| problem.in_locale(locale)).collect();
-        Error::Diagram(format!("{name}: {}", lines.join("; ")))
-    })
+    read(&bytes).map_err(|problems| undrawn(name, &problems, locale))
+}
+
+/// Why a program cannot be drawn.
+pub(crate) fn undrawn(name: &str, problems: &[Problem], locale: Locale) -> Error {
+    let lines = problems.iter().take(limits::MISTAKES_MAX);
+    let lines: Vec<_> = lines.map(|problem| problem.in_locale(locale)).collect();
+    Error::Diagram(format!("{name}: {}", lines.join("; ")))
 }
 
 fn mistakes(project: &Project, locale: Locale) -> Vec<String> {

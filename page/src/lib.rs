@@ -11,7 +11,8 @@
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
 //! - `shared`, `control`: what all requests share; one of all browsers drives
 //! - `drive`: what it writes to the tree, and rest when it leaves
-//! - `store`, `diagrams`: programs of the robot; diagrams as pictures, and what stands in their blocks
+//! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
+//!   blocks
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
 //! - `error`, `limits`
 
@@ -26,6 +27,7 @@ mod door;
 mod drive;
 pub mod error;
 mod files;
+mod flows;
 mod guard;
 pub mod limits;
 mod plain;

@@ -83,6 +83,8 @@ pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
 pub const EDITED_BYTES_MAX: usize = 128 << 10;
 /// Bytes of a property of a block.
 pub const PROPERTY_BYTES_MAX: usize = 4 << 10;
+/// Blocks of a data-flow program that is drawn, of all its diagrams together.
+pub const FLOW_BLOCKS_MAX: usize = 5000;
 /// Mistakes of a diagram that are told.
 pub const MISTAKES_MAX: usize = 5;
 /// Bytes of a configuration, as the filesystem takes them.

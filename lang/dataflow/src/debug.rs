@@ -1,9 +1,9 @@
 //! A debugger's desk for programs of data flow: orders come in as texts, what they do goes out as JSON.
 //!
 //! Owns what each order does to a program of this language and to a look at its past, and what is told: variables, the
-//! last token of each port, and tokens that wait. The words of orders and the form of answers are those of
-//! `lang_diagram::debug` and `docs/protocol.md`. The owner of the desk gives it the robot and the clock, carries the texts,
-//! and decides what motors do at a stop. Knows no transport, no clients and no files.
+//! last token of each port, blocks that have reacted, and tokens that wait. The words of orders and the form of answers are
+//! those of `lang_diagram::debug` and `docs/protocol.md`. The owner of the desk gives it the robot and the clock, carries
+//! the texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 mod report;
 #[cfg(test)]
@@ -28,7 +28,6 @@ use lang_diagram::machine::Status;
 use lang_expr::Value;
 use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem, Words};
-use report::Ports;
 use std::collections::BTreeMap;
 
 /// A program with its debugger, for people elsewhere.
@@ -46,12 +45,14 @@ pub struct Desk {
     told: Announcement,
 }
 
-/// The last token of each port while somebody looks.
+/// The last token of each port, and the reactions of each block, while somebody looks.
 #[derive(Clone, Debug, Default)]
 struct Tap {
     /// Until when it listens, in milliseconds of the program.
     until: Option<u32>,
     ports: BTreeMap<(NodeId, u8), Seen>,
+    /// How often each block has reacted.
+    reactions: BTreeMap<NodeId, u32>,
 }
 
 /// What a port gave.
@@ -71,14 +72,17 @@ impl Tap {
         self.until = Some(now.saturating_add(limits::TAP_MS));
     }
 
+    /// Whether it listens; what it has heard is gone when it ends.
+    fn listens(&mut self, now: u32) -> bool {
+        if self.until.is_some_and(|until| now > until) {
+            *self = Self::default();
+        }
+        self.until.is_some()
+    }
+
     fn hear(&mut self, now: u32, at: (NodeId, u8), value: &Value) {
-        match self.until {
-            None => return,
-            Some(until) if now > until => {
-                *self = Self::default();
-                return;
-            }
-            Some(_) => {}
+        if !self.listens(now) {
+            return;
         }
         if self.ports.len() >= limits::TAP_PORTS_MAX && !self.ports.contains_key(&at) {
             return;
@@ -95,6 +99,23 @@ impl Tap {
             true => Value::text(value.brief()),
             false => value.clone(),
         };
+    }
+
+    fn see(&mut self, now: u32, node: NodeId) {
+        if !self.listens(now) {
+            return;
+        }
+        if self.reactions.len() >= limits::TAP_BLOCKS_MAX && !self.reactions.contains_key(&node) {
+            return;
+        }
+        let count = self.reactions.entry(node).or_default();
+        *count = count.saturating_add(1);
+    }
+
+    /// Forgets what it has heard: nodes have other numbers now.
+    fn forget(&mut self) {
+        self.ports.clear();
+        self.reactions.clear();
     }
 }
 
@@ -144,6 +165,7 @@ impl Trace for Both<'_> {
     }
 
     fn fired(&mut self, now: u32, node: NodeId) {
+        self.tap.see(now, node);
         self.other.fired(now, node);
     }
 
@@ -253,8 +275,7 @@ impl Desk {
         let patched = self.machine.patch(version, brick)?;
         self.hindsight.to_present();
         self.hindsight.changed();
-        // Nodes have other numbers now.
-        self.tap.ports.clear();
+        self.tap.forget();
         self.tell_again();
         Ok(patched)
     }
@@ -328,17 +349,17 @@ impl Desk {
             (Status::Running, false) if self.is_stopped() => "stopped",
             (Status::Running, false) => "running",
         };
-        // What ports gave is known of the present alone.
-        let none = Ports::new();
+        // What ports gave and blocks did is known of the present alone.
+        let none = Tap::default();
         let told = report::State {
             word,
             is_attached: self.is_attached,
             status: self.machine.status(),
             machine,
             stop,
-            ports: match self.hindsight.is_past() {
+            tap: match self.hindsight.is_past() {
                 true => &none,
-                false => &self.tap.ports,
+                false => &self.tap,
             },
             kept: self.hindsight.kept(),
         };

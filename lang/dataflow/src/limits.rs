@@ -93,6 +93,8 @@ pub const TOLD_BYTES: usize = 16 << 10;
 pub const TOLD_CHARACTERS_MAX: usize = 1000;
 /// Ports whose last tokens a debugger keeps.
 pub const TAP_PORTS_MAX: usize = 1000;
+/// Blocks whose reactions a debugger counts.
+pub const TAP_BLOCKS_MAX: usize = 1000;
 /// What such a token weighs at most; of a longer one the text is kept that is told.
 pub const TAP_CELLS_MAX: u32 = 64;
 /// For how many milliseconds after a look tokens are kept for the next one.

@@ -1,8 +1,9 @@
-//! What the desk tells, as JSON: where a program is, what its variables hold, what its ports gave last.
+//! What the desk tells, as JSON: where a program is, what its variables hold, what its ports gave last, which blocks
+//! have reacted.
 //!
 //! Owns the form, which `docs/protocol.md` describes. Knows no orders.
 
-use super::Seen;
+use super::Tap;
 use crate::limits::{TOLD_BYTES, TOLD_CHARACTERS_MAX};
 use crate::machine::Machine;
 use crate::machine::stops::Stop;
@@ -12,9 +13,6 @@ use lang_diagram::machine::Status;
 use lang_text::json::Object;
 use lang_text::problem::Locale;
 use std::collections::BTreeMap;
-
-/// Ports with what they gave.
-pub(super) type Ports = BTreeMap<(NodeId, u8), Seen>;
 
 /// An object without members.
 pub(super) fn object() -> Object {
@@ -56,7 +54,7 @@ pub(super) struct State<'a> {
     pub machine: &'a Machine,
     /// Where that is stopped.
     pub stop: Option<&'a Stop>,
-    pub ports: &'a Ports,
+    pub tap: &'a Tap,
     /// From when on its past is kept, and in how many bytes.
     pub kept: Option<(u32, usize)>,
 }
@@ -83,7 +81,7 @@ pub(super) fn state(state: &State<'_>, locale: Locale) -> String {
     told = listed(
         told,
         "ports",
-        state.ports.iter(),
+        state.tap.ports.iter(),
         |(&(node, port), seen)| {
             let told = place(program, Target { node, port });
             let told = told
@@ -91,6 +89,12 @@ pub(super) fn state(state: &State<'_>, locale: Locale) -> String {
                 .text("value", &seen.last.brief());
             told.plain("count", seen.count).done()
         },
+    );
+    told = listed(
+        told,
+        "reacted",
+        state.tap.reactions.iter(),
+        |(&node, count)| block(program, node).plain("count", count).done(),
     );
     told = listed(told, "waiting", waiting(machine), |(at, count, lost)| {
         let told = place(program, at).plain("count", count);

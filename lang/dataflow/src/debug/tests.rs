@@ -98,6 +98,13 @@ fn a_program_that_is_watched_tells_its_variables_and_its_ports() {
     let second = told(&mut desk, "look");
     let port = "\"caption\":\"F\",\"port\":\"O0\",\"type\":\"float\",\"value\":\"10\",\"count\":2}";
     assert!(second.contains(port), "{second}");
+    // One that gives no token has reacted too.
+    let motors = "\"caption\":\"M\",\"count\":2}";
+    let reacted = second.split("\"reacted\":").nth(1).unwrap_or_default();
+    assert!(reacted.contains(motors), "{second}");
+    runs(&mut desk, &mut robot, 70, limits::TAP_MS + 100);
+    let late = told(&mut desk, "look");
+    assert!(late.contains("\"ports\":[],\"reacted\":[]"), "{late}");
     assert!(told(&mut desk, "pause").contains("\"done\":false"));
 }
 
@@ -407,7 +414,7 @@ fn what_is_too_much_to_tell_is_cut_and_counted() {
     let (mut desk, mut robot) = (desk(&text), Robot::default());
     told(&mut desk, "attach");
     let before = told(&mut desk, "look");
-    for list in ["variables", "ports", "waiting"] {
+    for list in ["variables", "ports", "reacted", "waiting"] {
         assert_eq!(left_out(&before, list), 0, "{before}");
     }
     runs(&mut desk, &mut robot, 0, 20);
@@ -423,7 +430,7 @@ fn what_is_too_much_to_tell_is_cut_and_counted() {
         assert_eq!(shown + left_out, all, "{list}");
     }
     assert!(!state.contains(&"x".repeat(TOLD_CHARACTERS_MAX + 1)));
-    // Three lists, each with the one item more that has filled it, and what is told beside them.
-    let most = 3 * (TOLD_BYTES + TOLD_CHARACTERS_MAX + 1000) + 1000;
+    // Four lists, each with the one item more that has filled it, and what is told beside them.
+    let most = 4 * (TOLD_BYTES + TOLD_CHARACTERS_MAX + 1000) + 1000;
     assert!(state.len() < most, "{} of {most} bytes", state.len());
 }
