@@ -49,6 +49,19 @@ export const WANTED_PATHS_MAX = 64;
 /** Orders to the debugger that wait for their answers; the robot takes 256. */
 export const ORDERS_WAITING_MAX = 100;
 
+/** Items of each list that the debugger tells: ports, of which the robot keeps 1000, variables, threads. */
+export const TOLD_ITEMS_MAX = 1000;
+/** Letters of a name in it, and of an id of a block. */
+export const TOLD_NAME_LETTERS_MAX = 1000;
+/** Bytes of the pictures of a program. */
+export const SHEETS_BYTES_MAX = 32 << 20;
+/** Elements of a picture: a thousand blocks of data flow with many ports. */
+export const PICTURE_ELEMENTS_MAX = 60_000;
+/** Letters of a token that stand in the picture; all of it stands beside the picture. */
+export const TOKEN_LETTERS_MAX = 12;
+/** Ports that are listed beside the picture; those of one block are listed when it is chosen. */
+export const PORTS_LISTED_MAX = 60;
+
 /** Fields of a format that are looked at. */
 export const FORMAT_FIELDS_MAX = 4096;
 /** Numbers of one node that are shown one by one. */

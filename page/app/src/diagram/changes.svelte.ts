@@ -2,6 +2,7 @@
 //
 // Owns what can be taken back. A diagram that runs goes on with the new value; the robot says what it did.
 
+import { SHEETS_BYTES_MAX } from '../limits';
 import type { Programs } from '../robot/program.svelte';
 import { language, words } from '../words';
 import { type SheetPicture, valueOf } from './sheet';
@@ -126,5 +127,10 @@ function pathOf(name: string): string {
 /** The sheets of a diagram as the robot has it now; else why there are none. */
 export async function sheetsOf(name: string): Promise<SheetPicture[] | string> {
   const answer = await fetch(`/diagram/${pathOf(name)}?language=${language}`);
-  return answer.ok ? ((await answer.json()) as SheetPicture[]) : (await answer.text()).trim();
+  if (!answer.ok) return (await answer.text()).trim();
+  if (Number(answer.headers.get('content-length')) > SHEETS_BYTES_MAX) {
+    await answer.body?.cancel();
+    return words.sheetsLarge;
+  }
+  return (await answer.json()) as SheetPicture[];
 }

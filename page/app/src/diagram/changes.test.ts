@@ -12,6 +12,7 @@ const sheetsWith = (a: string, b: string): SheetPicture[] => [
   {
     name: 'main',
     main: true,
+    flow: false,
     picture: '',
     blocks: {
       timer: {

@@ -2,9 +2,13 @@
 //
 // Owns what is taken from the picture: its shapes, and no style, script or link.
 
+import { PICTURE_ELEMENTS_MAX } from '../limits';
+
 export interface SheetPicture {
   name: string;
   main: boolean;
+  /** Of data flow: its blocks have ports, and a program of it has neither threads nor a past. */
+  flow: boolean;
   /** SVG, in which each block is a group with its `data-id`. */
   picture: string;
   /** What stands in its blocks, by those ids; blocks of other kits are not there. */
@@ -15,6 +19,17 @@ export interface SheetPicture {
 export interface BlockFacts {
   title: string;
   properties: Property[];
+  /** Only of data flow: what no other block of its sheet is called. */
+  name?: string;
+  ports?: PortSpot[];
+}
+
+/** A port of a block, and where it is from the corner of its block. */
+export interface PortSpot {
+  name: string;
+  gives: boolean;
+  x: number;
+  y: number;
 }
 
 export interface Property {
@@ -54,13 +69,15 @@ const TAGS = new Set([
   ...['tspan', 'title'],
 ]);
 
-/** The picture as an element; undefined if it is none. */
+/** The picture as an element; undefined if it is none, or too large to be shown. */
 export function picture(text: string): SVGSVGElement | undefined {
   // The rules of the page forbid styles in a text, and would say so in the console.
   const plain = text.replace(/<style>[^<]*<\/style>/, '');
   const root = new DOMParser().parseFromString(plain, 'image/svg+xml').documentElement;
   if (!(root instanceof SVGSVGElement)) return undefined;
-  for (const element of [...root.querySelectorAll('*')]) {
+  const elements = [...root.querySelectorAll('*')];
+  if (elements.length > PICTURE_ELEMENTS_MAX) return undefined;
+  for (const element of elements) {
     if (!TAGS.has(element.localName)) element.remove();
     for (const { name } of [...element.attributes]) {
       if (name.startsWith('on') || name.endsWith('href') || name === 'style') element.removeAttribute(name);
@@ -86,4 +103,23 @@ export function titlesOf(text: string): Map<string, string> {
   return new Map(
     all.map(([id, block]) => [id, (block.querySelector('title')?.textContent ?? '').replace(/: $/, '')]),
   );
+}
+
+/** Classes of blocks: only those are touched whose class changes. */
+export class Marks {
+  readonly #marked = new Map<string, ReadonlySet<string>>();
+
+  constructor(private readonly blocks: ReadonlyMap<string, Element>) {}
+
+  /** These blocks have the class, and no other ones. Returns those for which that is new. */
+  put(name: string, ids: ReadonlySet<string>): string[] {
+    const before = this.#marked.get(name) ?? new Set();
+    const changed = [
+      ...[...ids].filter((id) => !before.has(id)),
+      ...[...before].filter((id) => !ids.has(id)),
+    ];
+    for (const id of changed) this.blocks.get(id)?.classList.toggle(name, ids.has(id));
+    this.#marked.set(name, new Set(ids));
+    return changed;
+  }
 }

@@ -3,10 +3,10 @@
 // Owns where that clock is. What a recording has is known to `memory`; how it looks, to the views.
 
 import type { Timeline } from '../robot/history';
-import type { DebuggerState } from '../robot/debugger.svelte';
 import type { OutputLine } from '../robot/program.svelte';
 import type { Fields, Line, Node } from '../robot/recording';
 import type { Known } from '../robot/robot.svelte';
+import type { DebuggerState } from '../robot/told';
 import type { Beside } from './beside.svelte';
 import type { Memory } from './memory';
 import { countUntil, runningAt, Steps } from './steps';

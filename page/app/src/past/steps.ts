@@ -3,8 +3,9 @@
 // Owns the reading of lines of `/programs` and `/diagram`; docs/protocol.md has what the latter say. Believes nothing.
 
 import { VALUE_LETTERS_MAX } from '../limits';
-import type { Place, Thread, DebuggerState, Variable } from '../robot/debugger.svelte';
+import { isObject } from '../robot/plain';
 import type { Line } from '../robot/recording';
+import type { DebuggerState, Place, Thread, Variable } from '../robot/told';
 
 /** How many lines are not later than a time. */
 export function countUntil(lines: readonly Line[], time: number): number {
@@ -87,8 +88,4 @@ export class Steps {
 function placeOf(thread: Record<string, unknown>): Place {
   const { diagram, id, block } = thread;
   return { diagram: String(diagram ?? ''), id: String(id ?? ''), block: String(block ?? '') };
-}
-
-function isObject(value: unknown): value is Record<string, unknown> {
-  return typeof value === 'object' && value !== null && !Array.isArray(value);
 }

@@ -5,47 +5,13 @@
 import { SvelteMap } from 'svelte/reactivity';
 import { ORDERS_WAITING_MAX } from '../limits';
 import type { Link } from '../link/link';
-
-/** A block of a diagram. */
-export interface Place {
-  diagram: string;
-  id: string;
-  block: string;
-}
-
-export interface Thread {
-  number: number;
-  name: string;
-  at?: Place;
-  /** Unknown of the past. */
-  does?: 'enters' | 'gives way' | 'waits' | 'held' | 'failed';
-  for?: string;
-  left_ms?: number;
-  port?: string;
-  calls?: Place[];
-}
-
-export interface Variable {
-  name: string;
-  type: string;
-  value: string;
-}
-
-/** Where the program is. */
-export interface DebuggerState {
-  state: 'running' | 'stopped' | 'past' | 'searching' | 'ended' | 'gone';
-  ms?: number;
-  attached?: boolean;
-  stop?: { reason: string; text?: string; variable?: string; at?: Place };
-  threads?: Thread[];
-  variables?: Variable[];
-  kept?: { from_ms: number; bytes: number };
-}
+import { isObject } from './plain';
+import { type DebuggerState, type Place, stateOf } from './told';
 
 export interface Answer {
   done: boolean;
   why?: string;
-  program?: DebuggerState;
+  program?: DebuggerState | undefined;
   number?: number;
   type?: string;
   value?: string;
@@ -140,7 +106,8 @@ export class Debugger {
     const answer = await this.ask('breakpoints');
     const all = new Map(this.breakpoints);
     for (const { number, block } of answer?.breakpoints ?? []) {
-      if (typeof block === 'object') all.set(block.id, number);
+      const id = typeof block === 'object' ? block.id : block;
+      if (id !== undefined) all.set(id, number);
     }
     this.breakpoints = all;
   }
@@ -170,15 +137,15 @@ export class Debugger {
   /** A message of the control port. */
   message(message: string): void {
     if (!message.startsWith('debug: ')) return;
-    const value = JSON.parse(message.slice('debug: '.length)) as Answer &
-      DebuggerState & { to?: number | null; control?: string | null };
+    const value = parsed(message.slice('debug: '.length));
+    if (!isObject(value)) return;
     if (typeof value.to === 'number') {
-      this.#waiting.get(value.to)?.(value);
+      this.#waiting.get(value.to)?.({ ...(value as unknown as Answer), program: stateOf(value.program) });
       this.#waiting.delete(value.to);
     } else if (value.state === 'gone') {
       this.#gone();
-    } else if (value.state !== undefined) {
-      this.told = value;
+    } else {
+      this.told = stateOf(value) ?? this.told;
     }
   }
 
@@ -192,5 +159,13 @@ export class Debugger {
   #gone(): void {
     this.told = undefined;
     this.breakpoints = new Map();
+  }
+}
+
+function parsed(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return undefined;
   }
 }

@@ -41,6 +41,11 @@ export function isName(name: string): boolean {
   return isPlain && name.split('/').every(isPart);
 }
 
+/** Whether a program of this name has a picture: of control flow or of data flow. */
+export function isDrawn(name: string): boolean {
+  return /\.(qrs|flow)$/.test(name);
+}
+
 /** What the robot's `status` says about a program: its name, or nothing if none runs. */
 export function runningOf(status: string): string {
   const line = /^status: program (.*)$/m.exec(status)?.[1] ?? 'none';
