@@ -9,6 +9,7 @@ import { Look, Robot, eventually } from './robot.js';
 
 const folder = resolve(import.meta.dirname, '../../../docs/user/pictures');
 const diagram = resolve(import.meta.dirname, '../../../editors/vscode/test/texts/count.qrs');
+const flow = resolve(import.meta.dirname, '../../../examples/dataflow/walls.flow');
 const DRIVE = `brick.motor('M3').setPower(45)
 brick.motor('M4').setPower(60)
 script.wait(60000)
@@ -72,6 +73,14 @@ try {
   await page.getByRole('button', { name: 'Continue' }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
   await shot('diagram');
+  await open('program');
+  await page.setInputFiles('input[type=file]', flow);
+  await open('diagram:walls.flow');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.locator('g.lit[aria-label=wheels]').focus();
+  await page.keyboard.press('b');
+  await page.locator('g.stopped[aria-label^=wheels]').waitFor();
+  await shot('flow');
   await open('configuration');
   const text = page.locator('[contenteditable=true]');
   await text.click();

@@ -53,3 +53,48 @@ it('quick toggles are one after the other', async () => {
   await desk.detach('a.qrs');
   expect([desk.breakpoints.size, desk.planned('a.qrs')]).toEqual([0, []]);
 });
+
+it('breakpoints of others are learned, whichever way their blocks are told', async () => {
+  const asked: string[] = [];
+  const breakpoints = [
+    { number: 3, block: 'a block of data flow', hits: 0 },
+    { number: 4, block: { diagram: 'd', id: 'a block', block: 'Timer' }, hits: 0 },
+    { number: 5, variable: 'n', hits: 0 },
+  ];
+  const link = {
+    request(request: string): boolean {
+      const [, tag, order = ''] = /^debug:(\d+) (.*)$/.exec(request) ?? [];
+      asked.push(order);
+      const more = order === 'look' ? { program: { state: 'running', attached: true } } : { breakpoints };
+      queueMicrotask(() =>
+        desk.message(`debug: ${JSON.stringify({ to: Number(tag), done: true, ...more })}`),
+      );
+      return true;
+    },
+  };
+  const desk: Debugger = new Debugger(link as unknown as Link);
+  await desk.look();
+  expect(asked).toEqual(['look', 'breakpoints']);
+  expect([...desk.breakpoints]).toEqual([
+    ['a block of data flow', 3],
+    ['a block', 4],
+  ]);
+});
+
+it('what is no state changes nothing', () => {
+  const { desk } = robot();
+  desk.message('debug: {"state":"running","ms":5}');
+  for (const odd of [
+    '{',
+    'null',
+    '[]',
+    '5',
+    '{"state":7}',
+    '{"log":["a"],"lost":0}',
+    '{"to":99,"done":true}',
+  ])
+    desk.message(`debug: ${odd}`);
+  expect(desk.told).toMatchObject({ state: 'running', ms: 5 });
+  desk.message('debug: {"state":"gone"}');
+  expect(desk.told).toBeUndefined();
+});
