@@ -77,7 +77,7 @@ try {
   await page.setInputFiles('input[type=file]', flow);
   await open('diagram:walls.flow');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
-  await page.locator('g.lit[aria-label=wheels]').focus();
+  await page.locator('g.lit[aria-label^=wheels]').focus();
   await page.keyboard.press('b');
   await page.locator('g.stopped[aria-label^=wheels]').waitFor();
   await shot('flow');

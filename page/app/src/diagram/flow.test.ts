@@ -12,7 +12,7 @@ it('what a port has given, and what waits there, stand together', () => {
     ms: 40,
     ports: [
       { ...at('a', 'OUT'), type: 'int', value: '7', count: 3 },
-      { ...at('a', 'OUT'), type: 'int', value: '8', count: 1 },
+      { ...at('a', 'OUT'), type: 'float', value: '0.30000000000000004', count: 1 },
     ],
     waiting: [
       { ...at('b', 'DATA'), count: 2, lost: 5 },
@@ -20,7 +20,7 @@ it('what a port has given, and what waits there, stand together', () => {
     ],
   });
   const [a, b] = portsOf(told);
-  expect(a).toMatchObject({ id: 'a', last: { value: '8' }, count: 4, waiting: 0, lost: 1 });
+  expect(a).toMatchObject({ id: 'a', last: '0.3', count: 4, waiting: 0, lost: 1 });
   expect(b).toMatchObject({ id: 'b', last: undefined, waiting: 2, lost: 5 });
   expect(portsOf(undefined)).toEqual([]);
 });
@@ -42,6 +42,18 @@ it('a block that reacts is lit for a while of the program', () => {
   // What is no longer told of is not lit, and what is told anew has just reacted.
   expect([...reactions.hear(told(900, {}))]).toEqual([]);
   expect([...reactions.hear(told(1000, { b: 1 }))]).toEqual(['b']);
+});
+
+it('a block that gives by itself is lit as well', () => {
+  const given = (count: number) =>
+    stateOf({
+      state: 'running',
+      ms: 100 * count,
+      ports: [{ ...at('a', 'OUT'), type: 'int', value: '1', count }],
+    });
+  const reactions = new Reactions();
+  reactions.hear(given(1));
+  expect([...reactions.hear(given(2))]).toEqual(['a']);
 });
 
 it('a program that begins anew is heard anew', () => {

@@ -3,6 +3,7 @@
 // Owns how long a reaction is seen. Knows no elements.
 
 import type { DebuggerState } from '../robot/told';
+import { shown } from './value';
 
 /** What is known of one port. */
 export interface PortFacts {
@@ -12,8 +13,8 @@ export interface PortFacts {
   id: string;
   caption: string;
   port: string;
-  /** Undefined: none was given lately. */
-  last: { type: string; value: string } | undefined;
+  /** The last token that it gave, for people; undefined: none was given lately. */
+  last: string | undefined;
   /** Tokens given since somebody looks. */
   count: number;
   waiting: number;
@@ -35,7 +36,7 @@ export function portsOf(told: DebuggerState | undefined): PortFacts[] {
   };
   for (const given of told?.ports ?? []) {
     const facts = at(given);
-    facts.last = { type: given.type, value: given.value };
+    facts.last = shown(given.type, given.value);
     facts.count += given.count;
   }
   for (const one of told?.waiting ?? []) {
@@ -46,9 +47,11 @@ export function portsOf(told: DebuggerState | undefined): PortFacts[] {
   return [...all.values()];
 }
 
-/** Which blocks have reacted lately. What was heard twice is heard once. */
+/**
+ * Which blocks have reacted lately, or given a token by themselves, as sensors and timers do. What was heard twice is heard once.
+ */
 export class Reactions {
-  /** How often each block had reacted, and when that was heard to be more. */
+  /** How often each block had reacted and given, and when that was heard to be more. */
   readonly #blocks = new Map<string, { count: number; at_ms: number }>();
   #isFirst = true;
 
@@ -61,7 +64,8 @@ export class Reactions {
     }
     const now = told.ms ?? 0;
     const counts = new Map<string, number>();
-    for (const { id, count } of told.reacted ?? []) counts.set(id, (counts.get(id) ?? 0) + count);
+    for (const { id, count } of [...(told.reacted ?? []), ...(told.ports ?? [])])
+      counts.set(id, (counts.get(id) ?? 0) + count);
     for (const [id, count] of counts) {
       const before = this.#blocks.get(id);
       if (before?.count === count) continue;

@@ -65,5 +65,5 @@ function says({ last, waiting, lost }: PortFacts): { text: string; kind: string 
     const parts = [waiting > 0 ? words.waitingAt(waiting) : '', lost > 0 ? words.lostAt(lost) : ''];
     return { text: parts.filter(Boolean).join(', '), kind: lost > 0 ? 'waits lost' : 'waits' };
   }
-  return { text: short(last?.value ?? '', TOKEN_LETTERS_MAX), kind: 'last' };
+  return { text: short(last ?? '', TOKEN_LETTERS_MAX), kind: 'last' };
 }

@@ -39,7 +39,7 @@ it('a stop of data flow says what is about to arrive, and where', () => {
   expect(told?.stop).toEqual({
     reason: 'step',
     at: { diagram: 'd', id: 'i', block: 'DFSay' },
-    next: { caption: 'say', port: 'DATA', value: '5' },
+    next: { caption: 'say', port: 'DATA', type: 'int', value: '5' },
   });
   const other = stateOf({ state: 'stopped', stop: { reason: 'pause', at: { id: 'i' } } });
   expect(other?.stop?.next).toBeUndefined();

@@ -60,7 +60,7 @@ export interface Stop {
   text?: string;
   at?: Place;
   /** Of data flow: what is about to arrive at the block, and at which port. */
-  next?: { caption: string; port: string; value: string };
+  next?: { caption: string; port: string; type: string; value: string };
 }
 
 /** Where the program is. */
@@ -170,11 +170,13 @@ function threadOf(value: Told): Thread {
 
 function stopOf(value: Told): Stop {
   const at = isObject(value.at) ? value.at : undefined;
-  const next = at && 'value' in at ? givenOf(at) : undefined;
+  const given = at && 'value' in at ? givenOf(at) : undefined;
   return {
     reason: text(value.reason),
     ...(typeof value.text === 'string' ? { text: text(value.text, VALUE_LETTERS_MAX) } : {}),
     ...(at ? { at: placeOf(at) } : {}),
-    ...(next ? { next: { caption: next.caption, port: next.port, value: next.value } } : {}),
+    ...(given
+      ? { next: { caption: given.caption, port: given.port, type: given.type, value: given.value } }
+      : {}),
   };
 }

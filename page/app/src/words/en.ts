@@ -227,7 +227,7 @@ export const en = {
   lost: 'Lost',
   waitingAt: (count: number) => `${count} wait`,
   lostAt: (count: number) => `${count} lost`,
-  noTokens: 'No token has come yet.',
+  noTokens: 'No token waits here, and none was given lately.',
   morePorts: (count: number) => `And ${count} more: choose a block for its ports.`,
   leftOut: (count: number) =>
     `The robot does not tell everything of so large a program: ${count} values are missing.`,
