@@ -18,7 +18,7 @@ class Block {
 
 it('only blocks whose class changes are touched', () => {
   const all = Array.from({ length: 5000 }, (_, at) => [`b${at}`, new Block()] as const);
-  const blocks = new Map(all);
+  const blocks = new Map<string, Block>(all);
   const marks = new Marks(blocks as unknown as Map<string, Element>);
   expect(marks.put('lit', new Set(['b1', 'b2', 'gone']))).toEqual(['b1', 'b2', 'gone']);
   expect(marks.put('lit', new Set(['b2', 'b3']))).toEqual(['b3', 'b1', 'gone']);

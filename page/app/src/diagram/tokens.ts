@@ -1,24 +1,31 @@
 // What stands at the ports of a picture of data flow: the last token of an output, and what waits or was lost at an input.
 //
-// Owns the texts in the picture. The same stands beside it for those who do not see it, so screen readers skip these.
+// Owns a layer over the picture, so that a large picture is not painted anew for each token. The same stands beside it for those
+// who do not see it, so screen readers skip this.
 
 import { TOKEN_LETTERS_MAX } from '../limits';
 import { words } from '../words';
 import { type PortFacts, short } from './flow';
 import type { BlockFacts, PortSpot } from './sheet';
 
+const SVG = 'http://www.w3.org/2000/svg';
 /** From a port to its text, in px of the picture. */
 const BESIDE = 7;
 const ABOVE = 4;
 
 export class Tokens {
+  readonly layer = document.createElementNS(SVG, 'svg');
   readonly #texts = new Map<string, SVGTextElement>();
 
   constructor(
-    private readonly root: SVGSVGElement,
+    picture: SVGSVGElement,
     private readonly places: ReadonlyMap<string, SVGGElement>,
     private readonly facts: Readonly<Record<string, BlockFacts>>,
-  ) {}
+  ) {
+    this.layer.setAttribute('viewBox', picture.getAttribute('viewBox') ?? '');
+    this.layer.setAttribute('class', 'tokens');
+    this.layer.setAttribute('aria-hidden', 'true');
+  }
 
   /** Ports of other sheets have no place here. */
   show(ports: readonly PortFacts[]): void {
@@ -44,11 +51,10 @@ export class Tokens {
     const box = this.places.get(one.id)?.querySelector('rect');
     if (!spot || !box) return undefined;
     const beside = spot.gives ? BESIDE : -BESIDE;
-    const element = document.createElementNS('http://www.w3.org/2000/svg', 'text');
+    const element = document.createElementNS(SVG, 'text');
     element.setAttribute('x', String(Number(box.getAttribute('x')) + spot.x + beside));
     element.setAttribute('y', String(Number(box.getAttribute('y')) + spot.y - ABOVE));
-    element.setAttribute('aria-hidden', 'true');
-    this.root.append(element);
+    this.layer.append(element);
     this.#texts.set(one.key, element);
     return element;
   }
