@@ -117,14 +117,7 @@ pub fn changed(
 
 fn open(folder: &Path, name: &str, locale: Locale) -> Result<Opened, Error> {
     let bytes = store::read(folder, name)?;
-    read(&bytes).map_err(|problems| undrawn(name, &problems, locale))
-}
-
-/// Why a program cannot be drawn.
-pub(crate) fn undrawn(name: &str, problems: &[Problem], locale: Locale) -> Error {
-    let lines = problems.iter().take(limits::MISTAKES_MAX);
-    let lines: Vec<_> = lines.map(|problem| problem.in_locale(locale)).collect();
-    Error::Diagram(format!("{name}: {}", lines.join("; ")))
+    read(&bytes).map_err(|problems| Error::undrawn(name, &problems, locale))
 }
 
 fn mistakes(project: &Project, locale: Locale) -> Vec<String> {

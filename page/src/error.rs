@@ -2,6 +2,8 @@
 //!
 //! Owns the errors of this crate. Knows no command.
 
+use crate::limits::MISTAKES_MAX;
+use lang_text::problem::{Locale, Problem};
 use std::fmt;
 use std::io;
 use std::net::SocketAddr;
@@ -63,6 +65,13 @@ pub enum Error {
 }
 
 impl Error {
+    /// A program cannot be drawn: the first of its mistakes.
+    pub(crate) fn undrawn(name: &str, problems: &[Problem], locale: Locale) -> Self {
+        let lines = problems.iter().take(MISTAKES_MAX);
+        let lines: Vec<_> = lines.map(|problem| problem.in_locale(locale)).collect();
+        Self::Diagram(format!("{name}: {}", lines.join("; ")))
+    }
+
     /// The person or the part that can mend it.
     pub fn blame(&self) -> Blame {
         match self {

@@ -2,14 +2,13 @@
 //!
 //! Owns what of a block and its ports is told to a browser. Changes no file.
 
-use crate::diagrams::undrawn;
 use crate::error::Error;
 use crate::limits::FLOW_BLOCKS_MAX;
 use lang_dataflow::blocks::{Content, Direction, Port, Property, Row};
 use lang_dataflow::project::{Block, Diagram, Project};
-use lang_dataflow::show::{callings, picture};
+use lang_dataflow::show::{callings, picture, too_many};
 use lang_diagram::read::Save;
-use lang_text::problem::{Locale, Words};
+use lang_text::problem::Locale;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -30,7 +29,7 @@ pub(crate) fn is_text(name: &str) -> bool {
 pub(crate) fn of_text(bytes: &[u8], name: &str, locale: Locale) -> Result<Value, Error> {
     let text = std::str::from_utf8(bytes).map_err(|_| Error::Text(name.to_owned()))?;
     let read = lang_dataflow::text::read(text);
-    let project = read.map_err(|problems| undrawn(name, &problems, locale))?;
+    let project = read.map_err(|problems| Error::undrawn(name, &problems, locale))?;
     sheets(&project, name, locale)
 }
 
@@ -47,10 +46,7 @@ fn sheets(project: &Project, name: &str, locale: Locale) -> Result<Value, Error>
     // One more for each diagram, which has a picture too.
     let count: usize = diagrams.iter().map(|one| 1 + one.blocks.len()).sum();
     if count > FLOW_BLOCKS_MAX {
-        let words = Words::new(
-            format!("{name} has {count} blocks and diagrams: at most {FLOW_BLOCKS_MAX} are drawn"),
-            format!("{name}: блоков и диаграмм {count}, а рисуется не больше {FLOW_BLOCKS_MAX}"),
-        );
+        let words = too_many(name, count, FLOW_BLOCKS_MAX);
         return Err(Error::Diagram(words.in_locale(locale).to_owned()));
     }
     let sheet = |(at, diagram): (usize, &Diagram)| {

@@ -5,6 +5,8 @@
 
 mod conditions;
 mod edges;
+mod fed;
+mod found;
 mod givers;
 mod rates;
 mod shape;
@@ -16,10 +18,9 @@ mod words;
 mod tests;
 
 use crate::lower::{Lowered, lower};
-use crate::program::{NodeId, Program};
 use crate::project::Project;
-use lang_text::problem::{Place, Problem, Severity, Words, keep};
-use std::collections::HashSet;
+use found::Found;
+use lang_text::problem::{Problem, keep};
 
 /// Makes a project ready to run, with everything that can be told without running it.
 pub fn check(project: &Project) -> Lowered {
@@ -48,52 +49,4 @@ pub fn check(project: &Project) -> Lowered {
 /// The worst first, and otherwise in the order in which they were found.
 fn sort(problems: &mut [Problem]) {
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
-}
-
-/// What was found, once for each block of the save.
-#[derive(Debug, Default)]
-struct Found {
-    problems: Vec<Problem>,
-    has_failed: bool,
-    told: HashSet<(Option<String>, Option<String>, String)>,
-}
-
-impl Found {
-    fn add(&mut self, place: Place, severity: Severity, words: Words) {
-        let key = (
-            place.object.clone(),
-            place.property.clone(),
-            words.english.clone(),
-        );
-        if self.told.insert(key) {
-            let mut problem = Problem::error(words);
-            problem.severity = severity;
-            problem.place = place;
-            keep(&mut self.problems, problem);
-        }
-    }
-
-    fn error(&mut self, place: Place, words: Words) {
-        self.has_failed = true;
-        // There is always room for an error.
-        self.problems.truncate(lang_text::limits::PROBLEMS_KEPT - 1);
-        self.add(place, Severity::Error, words);
-    }
-
-    fn warn(&mut self, place: Place, words: Words) {
-        self.add(place, Severity::Warning, words);
-    }
-}
-
-/// Where a property of a node is, by its name in the save, for a problem.
-fn property_place(program: &Program, id: NodeId, name: &str) -> Place {
-    let property = program.node(id).row.property(name);
-    let shown = property.map_or(name, |property| property.shown);
-    program.property_place(id, shown, None)
-}
-
-/// Where a port of a node is, for a problem.
-fn port_place(program: &Program, id: NodeId, port: u8) -> Place {
-    let name = program.node(id).port_name(port);
-    program.property_place(id, name, None)
 }

@@ -12,6 +12,7 @@ mod tests;
 
 pub use picture::picture;
 pub use sentences::{Extent, Line, lines, sentences};
+pub use words::too_many;
 
 use crate::blocks::{Content, Property};
 use crate::project::{Block, Diagram};

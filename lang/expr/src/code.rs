@@ -5,7 +5,6 @@
 
 use super::analyse::Analysis;
 use super::escape;
-use super::flat::{self, Step};
 use super::literal;
 use super::names::{Kind, Slot};
 use super::reserved::{Function, SensorIndex};
@@ -68,6 +67,57 @@ pub(super) struct Span {
     pub(super) count: u32,
 }
 
+/// What one step does to the number on top of the stack. The part that it is of stands beside it, for faults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Step {
+    /// A number comes onto the stack.
+    Number(f64),
+    /// The value of a variable does; its part is asked if that is not simply a number.
+    Variable(Slot),
+    /// The number of any other part does.
+    Part,
+    /// The two numbers on top become one.
+    Both(Operator),
+    /// The number on top and this one become one.
+    With(Operator, f64),
+    /// This number and the one on top become one.
+    Of(f64, Operator),
+    /// It changes its sign; 0 has none.
+    Minus,
+    /// It leaves the stack and becomes the value of a variable.
+    Set(Slot),
+}
+
+/// How two numbers become one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Min,
+    Max,
+}
+
+impl Operator {
+    /// What the two give, if nothing has to be told.
+    pub(super) fn of(self, one: f64, other: f64) -> Option<f64> {
+        Some(match self {
+            Self::Add => one + other,
+            Self::Subtract => one - other,
+            Self::Multiply => one * other,
+            Self::Divide if other == 0.0 => return None,
+            Self::Divide => one / other,
+            Self::Power => one.powf(other),
+            Self::Min if one < other => one,
+            Self::Max if one < other => other,
+            Self::Min => other,
+            Self::Max => one,
+        })
+    }
+}
+
 /// A text for the machine.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Code {
@@ -93,13 +143,6 @@ impl Code {
 
 /// Compiles what an analysis found good.
 pub(super) fn compile(analysis: &Analysis<'_>) -> Code {
-    let mut code = tree(analysis);
-    flat::flatten(&mut code);
-    code
-}
-
-/// The same as a tree alone.
-pub(super) fn tree(analysis: &Analysis<'_>) -> Code {
     let mut compiler = Compiler {
         analysis,
         code: Code::default(),

@@ -3,67 +3,14 @@
 //! Owns which parts of a text become steps, and what a step does. A part that is no arithmetic is asked for its number by
 //! `run`, and so are faults told there: a list of steps gives what its tree gives, to the bit, in the same order.
 
-use super::code::{Code, Op, Span};
+use super::code::{Code, Op, Operator, Span, Step};
 use super::names::Slot;
 use super::reserved::Function;
 use super::run::Run;
 use super::tree::{Binary, Id};
 use super::value::Value;
 use super::words::Reason;
-
-/// How many numbers wait at most; what needs more of them stays a tree.
-const HEIGHT_MAX: usize = 16;
-
-/// What one step does to the number on top of the stack. The part that it is of stands beside it, for faults.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Step {
-    /// A number comes onto the stack.
-    Number(f64),
-    /// The value of a variable does; its part is asked if that is not simply a number.
-    Variable(Slot),
-    /// The number of any other part does.
-    Part,
-    /// The two numbers on top become one.
-    Both(Operator),
-    /// The number on top and this one become one.
-    With(Operator, f64),
-    /// This number and the one on top become one.
-    Of(f64, Operator),
-    /// It changes its sign; 0 has none.
-    Minus,
-    /// It leaves the stack and becomes the value of a variable.
-    Set(Slot),
-}
-
-/// How two numbers become one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Operator {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Min,
-    Max,
-}
-
-impl Operator {
-    /// What the two give, if nothing has to be told.
-    fn of(self, one: f64, other: f64) -> Option<f64> {
-        Some(match self {
-            Self::Add => one + other,
-            Self::Subtract => one - other,
-            Self::Multiply => one * other,
-            Self::Divide if other == 0.0 => return None,
-            Self::Divide => one / other,
-            Self::Power => one.powf(other),
-            Self::Min if one < other => one,
-            Self::Max if one < other => other,
-            Self::Min => other,
-            Self::Max => one,
-        })
-    }
-}
+use crate::limits::STEPS_HEIGHT_MAX;
 
 /// What a part computes, if it is arithmetic.
 enum Arithmetic {
@@ -72,57 +19,16 @@ enum Arithmetic {
 }
 
 fn arithmetic(code: &Code, id: Id) -> Option<Arithmetic> {
-    let both = |operator, one, other| Some(Arithmetic::Both(operator, one, other));
     match code.ops[id as usize] {
-        Op::Binary(operator, one, other) => match operator {
-            Binary::Add => both(Operator::Add, one, other),
-            Binary::Subtract => both(Operator::Subtract, one, other),
-            Binary::Multiply => both(Operator::Multiply, one, other),
-            Binary::Divide => both(Operator::Divide, one, other),
-            Binary::Power => both(Operator::Power, one, other),
-            Binary::Or
-            | Binary::And
-            | Binary::Less
-            | Binary::Greater
-            | Binary::LessEqual
-            | Binary::GreaterEqual
-            | Binary::NotEqual
-            | Binary::Equal
-            | Binary::BitOr
-            | Binary::BitXor
-            | Binary::BitAnd
-            | Binary::ShiftLeft
-            | Binary::ShiftRight
-            | Binary::Join
-            | Binary::DivideWhole
-            | Binary::Modulo => None,
-        },
+        Op::Binary(operator, one, other) => {
+            of_binary(operator).map(|operator| Arithmetic::Both(operator, one, other))
+        }
         Op::Minus(operand) => Some(Arithmetic::Minus(operand)),
-        Op::Call(function, span) => match (function, code.operands(span)) {
-            (Function::Min, &[one, other]) => both(Operator::Min, one, other),
-            (Function::Max, &[one, other]) => both(Operator::Max, one, other),
-            (
-                Function::Min
-                | Function::Max
-                | Function::Print
-                | Function::Time
-                | Function::Sensor
-                | Function::Sgn
-                | Function::Ceil
-                | Function::Floor
-                | Function::Sin
-                | Function::Cos
-                | Function::Ln
-                | Function::Exp
-                | Function::Asin
-                | Function::Acos
-                | Function::Atan
-                | Function::Sqrt
-                | Function::Abs
-                | Function::Random
-                | Function::Atan2,
-                _,
-            ) => None,
+        Op::Call(function, span) => match code.operands(span) {
+            &[one, other] => {
+                of_function(function).map(|operator| Arithmetic::Both(operator, one, other))
+            }
+            _ => None,
         },
         Op::Nil
         | Op::Bool(_)
@@ -147,6 +53,56 @@ fn arithmetic(code: &Code, id: Id) -> Option<Arithmetic> {
     }
 }
 
+fn of_binary(operator: Binary) -> Option<Operator> {
+    match operator {
+        Binary::Add => Some(Operator::Add),
+        Binary::Subtract => Some(Operator::Subtract),
+        Binary::Multiply => Some(Operator::Multiply),
+        Binary::Divide => Some(Operator::Divide),
+        Binary::Power => Some(Operator::Power),
+        Binary::Or
+        | Binary::And
+        | Binary::Less
+        | Binary::Greater
+        | Binary::LessEqual
+        | Binary::GreaterEqual
+        | Binary::NotEqual
+        | Binary::Equal
+        | Binary::BitOr
+        | Binary::BitXor
+        | Binary::BitAnd
+        | Binary::ShiftLeft
+        | Binary::ShiftRight
+        | Binary::Join
+        | Binary::DivideWhole
+        | Binary::Modulo => None,
+    }
+}
+
+fn of_function(function: Function) -> Option<Operator> {
+    match function {
+        Function::Min => Some(Operator::Min),
+        Function::Max => Some(Operator::Max),
+        Function::Print
+        | Function::Time
+        | Function::Sensor
+        | Function::Sgn
+        | Function::Ceil
+        | Function::Floor
+        | Function::Sin
+        | Function::Cos
+        | Function::Ln
+        | Function::Exp
+        | Function::Asin
+        | Function::Acos
+        | Function::Atan
+        | Function::Sqrt
+        | Function::Abs
+        | Function::Random
+        | Function::Atan2 => None,
+    }
+}
+
 /// Whether a part is arithmetic, or assigns arithmetic to variables and then is.
 fn is_list(code: &Code, id: Id) -> bool {
     let is_arithmetic = |id: Id| arithmetic(code, id).is_some();
@@ -165,7 +121,7 @@ fn is_list(code: &Code, id: Id) -> bool {
 pub(super) fn flatten(code: &mut Code) {
     let mut is_within = vec![false; code.ops.len()];
     let mut roots = Vec::new();
-    // A part stands behind its operands, so whoever uses it is seen before it.
+    // A part stands behind its operands, so what uses it is seen before it.
     for id in (0..code.ops.len() as Id).rev() {
         if is_within[id as usize] || !is_list(code, id) {
             continue;
@@ -269,7 +225,7 @@ impl Steps<'_> {
     fn push(&mut self, step: Step, part: Id) -> Option<()> {
         self.height += 1;
         self.add(step, part);
-        (self.height <= HEIGHT_MAX).then_some(())
+        (self.height <= STEPS_HEIGHT_MAX).then_some(())
     }
 
     /// The number that the steps since then make, if it is known: then they are taken back.
@@ -324,7 +280,7 @@ impl Run<'_> {
         let code = self.code;
         let from = span.from as usize;
         let steps = code.steps.get(from..from + span.count as usize);
-        let mut below = [0.0; HEIGHT_MAX];
+        let mut below = [0.0; STEPS_HEIGHT_MAX];
         // How many numbers there are, the one on top not counted.
         let mut height = 0;
         let mut top = 0.0;
@@ -332,7 +288,7 @@ impl Run<'_> {
             match *step {
                 Step::Both(operator) => {
                     height -= 1;
-                    top = self.apply(operator, below[height % HEIGHT_MAX], top, at);
+                    top = self.apply(operator, below[height % STEPS_HEIGHT_MAX], top, at);
                 }
                 Step::With(operator, number) => top = self.apply(operator, top, number, at),
                 Step::Of(number, operator) => top = self.apply(operator, number, top, at),
@@ -340,10 +296,10 @@ impl Run<'_> {
                 Step::Set(slot) => {
                     self.set_number(slot, top, at);
                     height -= 1;
-                    top = below[height % HEIGHT_MAX];
+                    top = below[height % STEPS_HEIGHT_MAX];
                 }
                 Step::Number(_) | Step::Variable(_) | Step::Part => {
-                    below[height % HEIGHT_MAX] = top;
+                    below[height % STEPS_HEIGHT_MAX] = top;
                     height += 1;
                     top = self.pushed(*step, at);
                 }
@@ -496,7 +452,7 @@ mod tests {
         let mut copy = names.clone();
         let mut analysis = Analysis::new(&source.tree, &mut parts, &mut copy, source.reading);
         analysis.run();
-        let tree = code::tree(&analysis);
+        let tree = code::compile(&analysis);
         assert!(tree.steps.is_empty());
         let count = source.code.steps.len();
         Some((run(&source.code, &names), run(&tree, &names), count))

@@ -227,6 +227,7 @@ fn analyse_anew(source: &mut Source, names: &mut Names) -> Result<(), Vec<Proble
         .all(|fault| fault.reason.severity() != Severity::Error);
     if is_good {
         source.code = code::compile(&analysis);
+        flat::flatten(&mut source.code);
         source.good_at = Some(names.epoch());
     } else {
         // As in the real program, which reads a text with errors anew each time.

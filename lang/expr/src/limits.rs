@@ -26,3 +26,5 @@ pub const TEXT_MAX: usize = 1 << 20;
 pub const NUMBER_TEXT_MAX: usize = 1000;
 /// Cells that one evaluation may compare, copy or make.
 pub const EVALUATION_CELLS_MAX: u32 = 4_000_000;
+/// Numbers on the stack of a list of steps; what needs more of them runs as a tree.
+pub const STEPS_HEIGHT_MAX: usize = 16;

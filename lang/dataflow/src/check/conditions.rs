@@ -2,7 +2,8 @@
 //!
 //! Owns what is looked for in a condition. That it is understood, and the types of its parts, are the business of `types`.
 
-use super::{Found, words};
+use super::found::Found;
+use super::words;
 use crate::blocks::Does;
 use crate::program::{Program, Text};
 use lang_expr::tree::{Binary, Id, Node as Part, Tree};

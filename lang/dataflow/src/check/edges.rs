@@ -2,8 +2,9 @@
 //!
 //! Owns what does not fit. Types are those of `types`.
 
+use super::found::{Found, port_place};
 use super::types::{Of, Types};
-use super::{Found, port_place, words};
+use super::words;
 use crate::blocks::{Does, Kind, SYNCHRONIZED};
 use crate::program::{Flow, NodeId, Op, Program, Target};
 use lang_expr::Source;

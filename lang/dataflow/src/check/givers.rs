@@ -2,7 +2,7 @@
 //!
 //! Owns the order in which texts are understood. What their types are is in `types`.
 
-use super::tokens::{Fed, fed};
+use super::fed::{Fed, fed};
 use crate::program::{Flow, Op, Program};
 use lang_expr::Source;
 use lang_expr::tree::{Id, Node as Part, Tree};

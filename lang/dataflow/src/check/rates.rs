@@ -2,8 +2,8 @@
 //!
 //! Owns the inference of periods. What is not known is not told.
 
+use super::found::{Found, port_place, property_place};
 use super::words;
-use super::{Found, port_place, property_place};
 use crate::limits;
 use crate::machine::POLL_MS;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};

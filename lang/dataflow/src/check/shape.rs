@@ -2,8 +2,8 @@
 //!
 //! Owns what only the graph shows.
 
+use super::found::{Found, port_place};
 use super::words;
-use super::{Found, port_place};
 use crate::blocks::Direction;
 use crate::limits;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};

@@ -6,6 +6,7 @@ use super::*;
 use crate::machine::fixtures::{diagram, project};
 use crate::project::DiagramKind;
 use lang_text::problem::Locale;
+use lang_text::problem::Severity;
 
 fn told(text: &str) -> Vec<String> {
     let main = diagram("main", DiagramKind::Main, text);

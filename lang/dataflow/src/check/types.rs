@@ -2,10 +2,11 @@
 //!
 //! Owns the inference. What is not known fits everywhere: then the program says so when it runs.
 
-use super::Found;
 use super::conditions;
+use super::fed::input;
+use super::found::Found;
 use super::givers::{Known, Variables};
-use super::tokens::{self, input, taken};
+use super::tokens::{self, taken};
 use super::words;
 use crate::blocks::Kind;
 use crate::limits;

@@ -11,7 +11,6 @@ use lang_diagram::debug::again::{Again, Asked, Begin};
 use lang_diagram::debug::{Reason, Step};
 use lang_diagram::machine::trace::Guard;
 use lang_expr::Value;
-use std::borrow::Cow;
 
 /// A data-flow program has no threads: it is one.
 const FLOW: u16 = 0;
@@ -131,7 +130,7 @@ impl Again for Machine {
     fn seen(&self) -> Here<'_> {
         Here {
             program: &self.program,
-            formulas: Texts::Copied(Cow::Borrowed(&self.formulas)),
+            formulas: Texts::Copied(&self.formulas, None),
             now: self.now,
             token: self.deliveries.front().map(|(_, token)| token),
         }

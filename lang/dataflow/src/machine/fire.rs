@@ -204,7 +204,7 @@ impl Machine {
             let at = Target { node: id, port };
             return Err(self.fault_at_port(at, words::too_large_token(), env));
         }
-        self.send(id, port, &value, env)
+        self.send(id, port, value, env)
     }
 
     fn decide(

@@ -11,7 +11,6 @@ use lang_expr::names::is_own;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Kind, Source, Value, Wanted};
 use lang_text::problem::{Place, Position, Problem, Words};
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// Functions that a text cannot have that is only looked at.
@@ -22,21 +21,21 @@ pub(super) enum Texts<'a> {
     /// Those of the program itself.
     Own(&'a mut Formulas),
     /// Those of one that must not change: copied when the first of them is computed.
-    Copied(Cow<'a, Formulas>),
+    Copied(&'a Formulas, Option<Box<Formulas>>),
 }
 
 impl Texts<'_> {
     fn get(&self) -> &Formulas {
         match self {
             Self::Own(formulas) => formulas,
-            Self::Copied(formulas) => formulas,
+            Self::Copied(formulas, copy) => copy.as_deref().unwrap_or(formulas),
         }
     }
 
     fn get_mut(&mut self) -> &mut Formulas {
         match self {
             Self::Own(formulas) => formulas,
-            Self::Copied(formulas) => formulas.to_mut(),
+            Self::Copied(formulas, copy) => copy.get_or_insert_with(|| Box::new(formulas.clone())),
         }
     }
 }

@@ -235,7 +235,7 @@ impl Ways {
                 let part = (edge.clamp(left, right) - from.0) / (to.0 - from.0);
                 from.1 + part * (to.1 - from.1)
             };
-            let (one, other) = match right - left < f64::EPSILON {
+            let (one, other) = match (right - left).abs() < f64::EPSILON {
                 true => (from.1, to.1),
                 false => (at(x as f64 * SQUARE), at((x + 1) as f64 * SQUARE)),
             };

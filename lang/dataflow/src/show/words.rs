@@ -1,6 +1,14 @@
 //! Words of sentences about data-flow programs, in English and Russian.
 
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
+
+/// Why a project has no pictures: it is too large for a person to look at.
+pub fn too_many(name: &str, count: usize, most: usize) -> Words {
+    Words::new(
+        format!("{name} has {count} blocks and diagrams: at most {most} are drawn"),
+        format!("{name}: блоков и диаграмм {count}, а рисуется не больше {most}"),
+    )
+}
 
 /// Words between blocks.
 #[derive(Clone, Copy, Debug)]

@@ -38,7 +38,7 @@ export interface PortPlace extends Place {
 }
 
 /** The last token that a port has given, and how many there were. */
-export interface Given extends PortPlace {
+export interface LastToken extends PortPlace {
   type: string;
   value: string;
   count: number;
@@ -72,7 +72,7 @@ export interface DebuggerState {
   threads?: Thread[];
   variables?: Variable[];
   /** Only of data flow, as the next ones. */
-  ports?: Given[];
+  ports?: LastToken[];
   reacted?: Reacted[];
   waiting?: Waiting[];
   /** Of how many items in all lists nothing is said. */
@@ -99,20 +99,20 @@ export function stateOf(value: unknown): DebuggerState | undefined {
     ...(stop ? { stop } : {}),
     threads: unique(list(value.threads).map(threadOf), ({ number }) => number),
     variables: unique(list(value.variables).map(variableOf), ({ name }) => name),
-    ...(Array.isArray(value.ports) ? { ports: list(value.ports).map(givenOf) } : {}),
+    ...(Array.isArray(value.ports) ? { ports: list(value.ports).map(lastTokenOf) } : {}),
     ...(Array.isArray(value.reacted) ? { reacted: list(value.reacted).map(reactedOf) } : {}),
     ...(Array.isArray(value.waiting) ? { waiting: list(value.waiting).map(waitingOf) } : {}),
     ...(leftOut > 0 ? { leftOut } : {}),
   };
 }
 
-type Told = Record<string, unknown>;
+type JsonObject = Record<string, unknown>;
 
 function sizeOf(value: unknown): number {
   return Array.isArray(value) ? value.length : 0;
 }
 
-function list(value: unknown): Told[] {
+function list(value: unknown): JsonObject[] {
   return Array.isArray(value) ? value.slice(0, TOLD_ITEMS_MAX).filter(isObject) : [];
 }
 
@@ -129,32 +129,32 @@ function count(value: unknown): number {
   return typeof value === 'number' && value > 0 && Number.isFinite(value) ? value : 0;
 }
 
-function placeOf(value: Told): Place {
+function placeOf(value: JsonObject): Place {
   return { diagram: text(value.diagram), id: text(value.id), block: text(value.block) };
 }
 
-function portOf(value: Told): PortPlace {
+function portOf(value: JsonObject): PortPlace {
   return { ...placeOf(value), caption: text(value.caption), port: text(value.port) };
 }
 
-function variableOf(value: Told): Variable {
+function variableOf(value: JsonObject): Variable {
   return { name: text(value.name), type: text(value.type), value: text(value.value, VALUE_LETTERS_MAX) };
 }
 
-function givenOf(value: Told): Given {
+function lastTokenOf(value: JsonObject): LastToken {
   const token = { type: text(value.type), value: text(value.value, VALUE_LETTERS_MAX) };
   return { ...portOf(value), ...token, count: count(value.count) };
 }
 
-function waitingOf(value: Told): Waiting {
+function waitingOf(value: JsonObject): Waiting {
   return { ...portOf(value), count: count(value.count), lost: count(value.lost) };
 }
 
-function reactedOf(value: Told): Reacted {
+function reactedOf(value: JsonObject): Reacted {
   return { ...placeOf(value), count: count(value.count) };
 }
 
-function threadOf(value: Told): Thread {
+function threadOf(value: JsonObject): Thread {
   const does = DOES.find((one) => one === value.does);
   return {
     number: typeof value.number === 'number' ? value.number : 0,
@@ -168,9 +168,9 @@ function threadOf(value: Told): Thread {
   };
 }
 
-function stopOf(value: Told): Stop {
+function stopOf(value: JsonObject): Stop {
   const at = isObject(value.at) ? value.at : undefined;
-  const given = at && 'value' in at ? givenOf(at) : undefined;
+  const given = at && 'value' in at ? lastTokenOf(at) : undefined;
   return {
     reason: text(value.reason),
     ...(typeof value.text === 'string' ? { text: text(value.text, VALUE_LETTERS_MAX) } : {}),
