@@ -8,6 +8,7 @@
 mod act;
 mod again;
 mod aside;
+mod deliveries;
 mod draw;
 mod evaluate;
 mod fire;
@@ -30,6 +31,7 @@ mod tests;
 use crate::limits;
 use crate::program::{Node, NodeId, Program, Target};
 use crate::project::Policy;
+use deliveries::Deliveries;
 use formulas::Formulas;
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
@@ -59,7 +61,7 @@ pub struct Machine {
     /// What those weigh, and those that waits keep.
     queued: u32,
     /// Tokens on their way.
-    deliveries: VecDeque<(Target, Value)>,
+    deliveries: Deliveries,
     /// By the time at which they are due and the order in which they were set.
     timers: BTreeMap<(u32, u32), NodeId>,
     set: u32,
@@ -126,7 +128,7 @@ impl Machine {
             queues: program.nodes.iter().map(empty_queues).collect(),
             program,
             queued: 0,
-            deliveries: VecDeque::new(),
+            deliveries: Deliveries::default(),
             timers: BTreeMap::new(),
             set: 0,
             subscribed: Vec::new(),
@@ -212,11 +214,9 @@ impl Machine {
             if self.stops.is_armed() && self.stops_here(env.trace) {
                 return Err(Halt::Stopped);
             }
-            // A number is read where it lies: moved on right after it was written, it would have to wait for that.
-            if let Some(&(target, Value::Float(number))) = self.deliveries.front() {
-                self.deliveries.pop_front();
+            if let Some((target, number)) = self.deliveries.pop_number() {
                 self.deliver(target, Value::Float(number), env)?;
-            } else if let Some((target, value)) = self.deliveries.pop_front() {
+            } else if let Some((target, value)) = self.deliveries.pop() {
                 self.deliver(target, value, env)?;
             } else {
                 return Ok(());
@@ -375,7 +375,7 @@ impl Machine {
         }
         env.trace.sent(self.now, from, port, value);
         for &target in targets {
-            self.deliveries.push_back((target, value.clone()));
+            self.deliveries.push(target, value);
         }
         Ok(())
     }
@@ -400,7 +400,7 @@ impl Machine {
         let is_alone = node.data == port;
         if is_alone && !self.has_queued(to) {
             self.count(to.node, env)?;
-            return self.react_to_one(to, value, env);
+            return self.react_to_one(to, &value, env);
         }
         self.queue(node, to, value, env)?;
         while self.is_complete(node, to.node) {

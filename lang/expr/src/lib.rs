@@ -262,21 +262,22 @@ pub fn evaluate_to(
     into: &mut Value,
 ) -> Result<(), Vec<Problem>> {
     run(source, names, store, outside, |run, root| {
-        *into = match source.wanted {
+        // Each is written at once: a value that is made and then moved has to wait for its own bytes.
+        match source.wanted {
             Wanted::Statements | Wanted::Any => match run.number_alone(root) {
-                Some(number) => Value::Float(number),
-                None => run.value(root),
+                Some(number) => *into = Value::Float(number),
+                None => *into = run.value(root),
             },
-            Wanted::Bool => Value::Bool(run.truth(root)),
-            Wanted::Int => Value::Int(run.whole(root)),
-            Wanted::Float => Value::Float(run.number(root)),
-            Wanted::Text => run.value(root).into_text(),
+            Wanted::Bool => *into = Value::Bool(run.truth(root)),
+            Wanted::Int => *into = Value::Int(run.whole(root)),
+            Wanted::Float => *into = Value::Float(run.number(root)),
+            Wanted::Text => *into = run.value(root).into_text(),
             Wanted::List => {
                 let texts = run.value(root).to_texts();
                 let items = texts.into_iter().map(Value::Text).collect();
-                Value::List(Rc::new(value::List::new(items).unwrap_or_default()))
+                *into = Value::List(Rc::new(value::List::new(items).unwrap_or_default()));
             }
-        };
+        }
     })
 }
 

@@ -49,7 +49,6 @@ test(
     await page.keyboard.press('b');
     await page.locator('g.break.stopped[aria-label^=wheels]').waitFor();
     await page.getByText(/at a breakpoint\. .+ is about to reach wheels, port M[34]/).waitFor();
-    expect(await page.getByRole('button', { name: 'Step back' }).count()).toBe(0);
     expect(await barriers(page)).toEqual([]);
     await page.keyboard.press('Enter');
     await page.getByRole('heading', { name: 'Ports of wheels' }).waitFor();
@@ -63,6 +62,10 @@ test(
     await page.getByText(/^Runs/).waitFor();
     await page.getByRole('button', { name: 'Pause' }).press('Enter');
     await page.getByText(/Stopped, motors at rest.*paused/).waitFor();
+    await page.getByRole('button', { name: 'Step back' }).press('Enter');
+    await page.getByText(/^In the past/).waitFor();
+    await page.getByRole('button', { name: 'To the present' }).press('Enter');
+    await page.getByText(/^Stopped, motors at rest/).waitFor();
     await page.getByRole('button', { name: 'Without debugger' }).press('Enter');
     await page.getByText(/^Runs/).waitFor();
     // Another sheet has its own blocks.

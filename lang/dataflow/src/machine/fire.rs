@@ -81,7 +81,7 @@ impl Machine {
             Gathers::Function(texts) => {
                 for at in 0..texts.len() {
                     if let Some(value) = self.take(id, FUNCTION_IN + 2 * at) {
-                        self.bind(id, at, value);
+                        self.bind(id, at, &value);
                     }
                 }
                 self.compute_all(id, texts, env)
@@ -112,7 +112,7 @@ impl Machine {
     pub(super) fn react_to_one(
         &mut self,
         to: Target,
-        value: Value,
+        value: &Value,
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         let Some(gathers) = env.program.node(to.node).gathers() else {
@@ -126,7 +126,7 @@ impl Machine {
             }
             Gathers::Drive(devices) => {
                 if let Some((device, _)) = devices.get(port) {
-                    self.drive(to, *device, &value, env)?;
+                    self.drive(to, *device, value, env)?;
                 }
                 self.done(to.node, env)
             }
@@ -135,7 +135,7 @@ impl Machine {
         }
     }
 
-    pub(super) fn bind(&mut self, id: NodeId, at: usize, value: Value) {
+    pub(super) fn bind(&mut self, id: NodeId, at: usize, value: &Value) {
         self.formulas
             .bind(id, at, value, &mut self.states[id as usize]);
     }
@@ -158,7 +158,7 @@ impl Machine {
         }
         debug_assert!(!waits, "its tokens are queued");
         let at = (usize::from(to.port) - FUNCTION_IN) / 2;
-        self.bind(to.node, at, value);
+        self.bind(to.node, at, &value);
         self.compute(to.node, at, texts[at], env)?;
         self.done(to.node, env)
     }
@@ -215,7 +215,7 @@ impl Machine {
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         if to.port != CONTROL {
-            self.bind(to.node, 0, value.clone());
+            self.bind(to.node, 0, &value);
         }
         let port = if self.truth(condition, env)? { 2 } else { 3 };
         self.send(to.node, port, &value, env)
@@ -230,7 +230,7 @@ impl Machine {
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         if to.port != CONTROL {
-            self.bind(to.node, 0, value.clone());
+            self.bind(to.node, 0, &value);
         }
         for (port, (condition, text)) in (3..).zip(arms) {
             let holds = match condition {
@@ -487,7 +487,7 @@ impl Machine {
                 if is_early {
                     return Ok(());
                 }
-                self.bind(to.node, 0, value.clone());
+                self.bind(to.node, 0, &value);
                 if !self.truth(condition, env)? {
                     return self.send(to.node, 1, &Value::Nil, env);
                 }

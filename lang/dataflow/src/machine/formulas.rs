@@ -130,30 +130,30 @@ impl Formulas {
     }
 
     /// Gives an own name of a node, by its place among them, the value of a token.
-    pub fn bind(&mut self, id: NodeId, at: usize, value: Value, state: &mut State) {
+    pub fn bind(&mut self, id: NodeId, at: usize, value: &Value, state: &mut State) {
         let Some(slot) = self.slot(id, at) else {
             return;
         };
         let bit = 1 << at;
         state.bound |= bit;
-        if super::values::is_unit(&value) {
+        if super::values::is_unit(value) {
             state.units |= bit;
             self.store.remove(slot);
             return;
         }
         state.units &= !bit;
         // Then nothing has to be inferred anew.
-        if self.store.set_like(slot, &value) {
+        if self.store.set_like(slot, value) {
             return;
         }
-        if !self.keeps_type(slot, &value) && self.names.retype(slot, &value) {
+        if !self.keeps_type(slot, value) && self.names.retype(slot, value) {
             // What the texts have learned of the former type is void.
             let (first, count) = self.of_node[id as usize];
             for source in &mut self.sources[first as usize..(first + count) as usize] {
                 source.reread();
             }
         }
-        if self.store.set(slot, value).is_err() {
+        if self.store.set(slot, value.clone()).is_err() {
             // All values together are too many; the text that reads it says that there is none.
             state.bound &= !bit;
         }

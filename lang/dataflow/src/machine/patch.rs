@@ -282,7 +282,7 @@ impl Machine {
                 let Some(value) = old.formulas.own(before, at, state) else {
                     continue;
                 };
-                self.bind(id, at, value);
+                self.bind(id, at, &value);
             }
         }
         Ok(())
