@@ -245,9 +245,9 @@ enum Command {
     /// Debug a diagram or a data-flow program: stop, step, look, and go back.
     ///
     /// The program runs in a simulated world and is stopped before its first block. The words are those of gdb; help shows
-    /// them. Model time stands still while it is stopped. The past of a diagram is kept, so that each moment of it can be
-    /// looked at again: reverse-next, reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs
-    /// on a robot, whose motors rest while it is stopped.
+    /// them. Model time stands still while it is stopped. The past is kept, so that each moment of it can be looked at
+    /// again: reverse-next, reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs on a
+    /// robot, whose motors rest while it is stopped.
     ///
     /// Exit status: 0 you have ended it; 2 the program cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),

@@ -128,12 +128,15 @@ pub(super) fn flatten(code: &mut Code) {
         }
         let mut steps = Steps {
             code,
-            is_within: &mut is_within,
+            within: Vec::new(),
             steps: Vec::new(),
             parts: Vec::new(),
             height: 0,
         };
         if steps.all(id).is_some() {
+            for part in steps.within {
+                is_within[part as usize] = true;
+            }
             let (steps, parts) = (steps.steps, steps.parts);
             let from = code.steps.len() as u32;
             let count = steps.len() as u32;
@@ -149,7 +152,8 @@ pub(super) fn flatten(code: &mut Code) {
 
 struct Steps<'a> {
     code: &'a Code,
-    is_within: &'a mut [bool],
+    /// Parts that these steps stand for.
+    within: Vec<Id>,
     steps: Vec<Step>,
     /// The part of each.
     parts: Vec<Id>,
@@ -185,12 +189,12 @@ impl Steps<'_> {
                 let begin = self.steps.len();
                 self.part(other)?;
                 let other = self.take_number(begin);
-                self.is_within[id as usize] = true;
+                self.within.push(id);
                 self.join(operator, [one, other], id)?;
             }
             (Some(Arithmetic::Minus(operand)), _) => {
                 self.part(operand)?;
-                self.is_within[id as usize] = true;
+                self.within.push(id);
                 match self.steps.last_mut() {
                     // It is all that there is of the operand.
                     Some(Step::Number(number)) => *number = minus(*number),
@@ -467,10 +471,14 @@ mod tests {
     }
 
     #[test]
-    fn what_needs_too_many_places_stays_a_tree() {
-        let text = (0..40).fold("1".to_owned(), |text, _| format!("(f + {text} * f)"));
-        let (steps, tree, _) = both(&text, Compat::Fixed).expect("good");
+    fn what_needs_too_many_places_stays_a_tree_and_its_parts_are_lists() {
+        let deep = (0..40).fold("1".to_owned(), |text, _| format!("(f + {text} * f)"));
+        let (steps, tree, count) = both(&deep, Compat::Fixed).expect("good");
         assert_eq!(steps, tree);
+        let long = format!("(f * 2 + i * 3) + {deep}");
+        let (steps, tree, with_more) = both(&long, Compat::Fixed).expect("good");
+        assert_eq!(steps, tree);
+        assert_eq!(with_more, count + 5);
     }
 
     proptest! {

@@ -253,7 +253,7 @@ pub fn evaluate(
     Ok(value)
 }
 
-/// The same, written where it is wanted: a value that is handed through several calls costs more than its arithmetic.
+/// The same, written where it is wanted, because handing a value through several calls costs more than its arithmetic.
 pub fn evaluate_to(
     source: &Source,
     names: &Names,
@@ -262,7 +262,7 @@ pub fn evaluate_to(
     into: &mut Value,
 ) -> Result<(), Vec<Problem>> {
     run(source, names, store, outside, |run, root| {
-        // Each is written at once: a value that is made and then moved has to wait for its own bytes.
+        // Each arm writes it: to move a value that was just written stalls the processor (see the benchmark `converter`).
         match source.wanted {
             Wanted::Statements | Wanted::Any => match run.number_alone(root) {
                 Some(number) => *into = Value::Float(number),

@@ -250,8 +250,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "watch",
         "NAME [if EXPRESSION]",
-        "stop after a variable changes, or a sensor that the program reads",
-        "остановка после изменения переменной или датчика, который программа читает",
+        "stop after a variable changes, or a sensor that a diagram reads",
+        "остановка после изменения переменной или датчика, который читает диаграмма",
     ),
     row(
         "dprintf",

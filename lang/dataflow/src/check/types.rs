@@ -349,7 +349,7 @@ impl<'a> Inference<'a> {
 
     /// Tells names that no text of the program gives a value; whether there are any.
     fn tell_unassigned(&self, source: &Source, text: &Text, found: &mut Found) -> bool {
-        let before = found.problems.len();
+        let mut is_any = false;
         let tree = source.tree();
         for (part, at) in tree.nodes.iter().zip(&tree.places) {
             let Part::Name(name) = part else {
@@ -362,10 +362,12 @@ impl<'a> Inference<'a> {
                 let place = self
                     .program
                     .property_place(text.node, text.property, Some(*at));
+                // Told once, however many instances the block has.
                 found.error(place, words::never_assigned(name));
+                is_any = true;
             }
         }
-        found.problems.len() > before
+        is_any
     }
 
     /// Teaches the names what the own ones of a text are, as far as that is known.

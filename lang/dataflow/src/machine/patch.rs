@@ -45,7 +45,7 @@ pub struct Patched {
     pub added: usize,
     /// Blocks that only the old one had.
     pub gone: usize,
-    /// Tokens that waited at ports that are gone.
+    /// Tokens that waited at ports that are gone, or were on their way there.
     pub lost: usize,
 }
 
@@ -61,7 +61,8 @@ impl fmt::Display for Patched {
         write!(f, "{kept} blocks kept, {added} new, {gone} gone")?;
         match lost {
             0 => Ok(()),
-            some => write!(f, ", {some} waiting tokens lost"),
+            1 => write!(f, ", 1 token lost"),
+            some => write!(f, ", {some} tokens lost"),
         }
     }
 }

@@ -84,7 +84,7 @@ fn tokens_that_a_wait_keeps_outlive_a_change_and_are_counted() {
     let patched = desk.patch(&version(gone), &mut robot).expect("a change");
     assert_eq!(
         patched.to_string(),
-        "2 blocks kept, 0 new, 1 gone, 1 waiting tokens lost"
+        "2 blocks kept, 0 new, 1 gone, 1 token lost"
     );
 }
 
