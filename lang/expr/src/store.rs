@@ -58,6 +58,11 @@ impl Store {
         true
     }
 
+    /// What all values together weigh.
+    pub fn cells(&self) -> u32 {
+        self.cells
+    }
+
     /// Takes a value away: the variable has none until it is set again.
     pub fn remove(&mut self, slot: Slot) -> Option<Value> {
         let value = self.values.get_mut(slot as usize)?.take();

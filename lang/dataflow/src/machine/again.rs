@@ -78,16 +78,18 @@ impl Again for Machine {
         const CELL: usize = size_of::<Value>();
         let texts = self.program.formulas.iter();
         let texts = texts.map(|text| NODE + text.text.len() * LETTER);
-        let variables = self.variables();
-        let values =
-            variables.map(|(name, value)| name.len() + CELL * (2 + value.cells() as usize));
+        let names = self.variables().map(|(name, _)| name.len() + 2 * CELL);
+        let remembered = self.states.iter().map(|state| state.memory.bytes());
         let deliveries = self.deliveries.iter();
         let on_way = deliveries.map(|(_, value)| CELL * (1 + value.cells() as usize));
         FIXED
             + self.program.nodes.len() * NODE
             + texts.sum::<usize>()
-            + values.sum::<usize>()
+            + names.sum::<usize>()
+            + self.formulas.cells() as usize * CELL
+            + remembered.sum::<usize>()
             + on_way.sum::<usize>()
+            // Also those that waits keep.
             + self.queued as usize * CELL
     }
 

@@ -339,6 +339,11 @@ impl Formulas {
         self.store.get(self.names.find(name)?).cloned()
     }
 
+    /// What all values weigh, those of blocks' own names among them.
+    pub fn cells(&self) -> u32 {
+        self.store.cells()
+    }
+
     /// Variables of the project that have values.
     pub fn variables(&self) -> impl Iterator<Item = (&str, &Value)> {
         let all = self.names.variables();

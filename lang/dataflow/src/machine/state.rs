@@ -180,6 +180,33 @@ impl Memory {
         kept.into_iter().flatten()
     }
 
+    /// How much memory the texts and the token take that it holds, about; tokens that wait their turn are counted where they
+    /// come.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Text(text) => text.len(),
+            Self::File(file, text) => file.len() + text.len(),
+            Self::Hold {
+                held: Some(Held::Token(token)),
+                ..
+            } => token.cells() as usize * size_of::<Value>(),
+            Self::Hold {
+                held: Some(Held::Start) | None,
+                ..
+            }
+            | Self::None
+            | Self::Count { .. }
+            | Self::Window { .. }
+            | Self::Gate { .. }
+            | Self::Readings { .. }
+            | Self::Offsets(..)
+            | Self::Pads { .. }
+            | Self::Begun(_)
+            | Self::Number(_)
+            | Self::Truth(_) => 0,
+        }
+    }
+
     /// Drops those of them whose port is not open any more.
     pub fn keep_of(&mut self, is_open: impl Fn(u8) -> bool) {
         if let Self::Hold { kept, .. } = self {

@@ -296,6 +296,38 @@ fn the_past_takes_no_more_than_it_may_and_forgets_its_beginning() {
 }
 
 #[test]
+fn all_that_a_copy_holds_is_counted() {
+    use lang_diagram::debug::again::Again;
+    const LONG: usize = 3000;
+    let long = "x".repeat(LONG);
+    let bytes = |text: &str| {
+        let whole =
+            format!("A Sensor\nF Text programming {{IO0=n = I0; '{long}'}}\n{text}\nA.OUT > F.I0");
+        let (mut desk, mut robot) = (desk(&whole), Robot::default());
+        runs(&mut desk, &mut robot, 0, 0);
+        let before = desk.machine.bytes();
+        runs(&mut desk, &mut robot, 10, 60);
+        assert!(desk.machine.errors().is_empty(), "{text}");
+        desk.machine.bytes() - before
+    };
+    // A token at 20, 40 and 60 ms each.
+    for (text, count) in [
+        ("Y Say\nF.O0 > Y.DATA", 0),
+        ("G Text programming {IO0=I0}\nF.O0 > G.I0", 1),
+        ("W Wait and send {time=9000 | keep=false}\nF.O0 > W.DATA", 1),
+        ("W Wait and send {time=9000 | keep=true}\nF.O0 > W.DATA", 3),
+        ("D Write to file\nF.O0 > D.FILE", 1),
+        ("D Write to file\nF.O0 > D.FILE\nF.O0 > D.TEXT", 2),
+        ("D Text on screen\nF.O0 > D.TEXT", 1),
+    ] {
+        let grown = bytes(text);
+        // A text of a value is counted by its cells, with some room.
+        let wanted = count * LONG..2 * count * LONG + LONG / 10;
+        assert!(wanted.contains(&grown), "{text}: {grown} bytes");
+    }
+}
+
+#[test]
 fn a_long_way_back_is_given_up_and_one_that_is_not_finds_its_end() {
     let (mut desk, mut robot) = (
         desk(SLOW),
