@@ -134,7 +134,14 @@ impl Again for Machine {
             program: &self.program,
             formulas: Texts::Copied(&self.formulas, None),
             now: self.now,
+            token: None,
+        }
+    }
+
+    fn seen_at_block(&self) -> Here<'_> {
+        Here {
             token: self.deliveries.front().map(|(_, token)| token),
+            ..self.seen()
         }
     }
 

@@ -57,8 +57,11 @@ pub trait Again: Clone + Debug {
     /// The thread at which it is stopped; none if nothing comes next.
     fn thread_of(stop: &Self::Stop) -> Option<u16>;
 
-    /// How breakpoints see it.
+    /// How breakpoints at changes see it: nothing comes to a change.
     fn seen(&self) -> Self::Seen<'_>;
+
+    /// How those at the block see it that a thread is about to enter.
+    fn seen_at_block(&self) -> Self::Seen<'_>;
 
     /// A step that begins here.
     fn walk(&self, thread: Option<u16>, step: Step) -> Self::Walk;
@@ -122,6 +125,10 @@ impl Again for Machine {
     }
 
     fn seen(&self) -> &Self {
+        self
+    }
+
+    fn seen_at_block(&self) -> &Self {
         self
     }
 

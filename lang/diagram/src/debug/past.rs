@@ -245,15 +245,14 @@ impl<M: Again> Looked<'_, M> {
     /// Why a breakpoint would have stopped at a moment.
     fn stops(&mut self, machine: &M, node: Option<Node>) -> Option<Reason> {
         let points = self.points;
-        let mut seen = machine.seen();
         if points.has_watches() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        let changed = points.stops_at_changes(&mut seen, &mut self.search.held);
+        let changed = points.stops_at_changes(&mut machine.seen(), &mut self.search.held);
         let node = node.filter(|node| points.is_marked(*node));
         if node.is_some() {
             *self.work += limits::SEARCH_LOOK_WORK;
         }
-        changed.or_else(|| points.stops_at(&mut seen, node?))
+        changed.or_else(|| points.stops_at(&mut machine.seen_at_block(), node?))
     }
 }

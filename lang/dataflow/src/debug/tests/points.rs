@@ -208,6 +208,40 @@ fn a_new_version_keeps_what_is_watched_and_is_no_change_itself() {
     );
 }
 
+#[test]
+fn a_condition_of_a_change_means_the_variable_data_and_no_token_also_in_the_past() {
+    // The token that comes after each change is above 100; the variable is not.
+    let text = "A Sensor\nF Text programming {IO0=data = I0; data + 100}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+    let (mut desk, mut robot) = asked(text, &["watch data\nif data > 100"]);
+    let back = |desk: &mut Desk| {
+        told(desk, "back continue");
+        while desk.search_on() {}
+        told(desk, "look")
+    };
+    for now in (0..400).step_by(10) {
+        robot.a1 = now as i32 / 10 % 7;
+        desk.step(now, &mut robot, &mut Deaf);
+        assert!(!desk.is_stopped());
+    }
+    told(&mut desk, "pause");
+    until_stopped(&mut desk, &mut robot, 400);
+    let state = back(&mut desk);
+    assert!(state.contains("\"reason\":\"oldest\""), "{state}");
+    told(&mut desk, "present");
+    // It counts where the variable itself is.
+    robot.a1 = 120;
+    told(&mut desk, "continue");
+    let state = until_stopped(&mut desk, &mut robot, 1400);
+    assert!(state.contains("\"is\":\"120\""), "{state}");
+    told(&mut desk, "step");
+    until_stopped(&mut desk, &mut robot, 2400);
+    told(&mut desk, "step");
+    until_stopped(&mut desk, &mut robot, 3400);
+    let state = back(&mut desk);
+    assert!(state.contains("\"reason\":\"change\""), "{state}");
+    assert!(state.contains("\"is\":\"120\""), "{state}");
+}
+
 /// A cycle that counts to a number within one instant.
 fn cycle(to: u32) -> String {
     format!(
