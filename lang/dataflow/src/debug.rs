@@ -423,6 +423,7 @@ impl Desk {
                 return Err(Common::NotNow(NotNow::Past).into());
             }
             Order::Set(name, text) => {
+                Self::must_run(&self.machine)?;
                 self.assign(name, text).map_err(Common::Expression)?;
                 let value = self.machine.value_of(name);
                 return Ok(value.map_or_else(report::object, |value| shared::value(&value)));

@@ -286,3 +286,19 @@ fn each_call_of_a_subprogram_keeps_its_own_and_a_random_that_repeats_no_more_end
     assert!(told(&mut desk, "continue").contains("has ended"));
     assert!(told(&mut desk, "until qrm:/main/M").contains("has ended"));
 }
+
+#[test]
+fn a_program_that_has_ended_takes_neither_breakpoints_nor_values() {
+    let text = "V Variable {variable=n = 3}\nM Motors {M3Power=50}\nV.CF_OUT > M.CF_IN";
+    let (mut desk, mut robot) = (desk(text), Robot::default());
+    told(&mut desk, "attach");
+    runs(&mut desk, &mut robot, 0, 20);
+    assert!(matches!(desk.machine().status(), Status::Ended { .. }));
+    for order in ["break qrm:/main/M", "watch n", "set n=4"] {
+        let answer = told(&mut desk, order);
+        assert!(answer.contains("\"done\":false"), "{order}: {answer}");
+        assert!(answer.contains("has ended"), "{order}: {answer}");
+    }
+    let n = told(&mut desk, "evaluate n");
+    assert!(n.contains("\"value\":\"3\""), "{n}");
+}
