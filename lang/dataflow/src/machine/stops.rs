@@ -46,8 +46,10 @@ pub(super) struct Stops {
     points: Points,
     wish: Wish,
     stopped: Option<Stop>,
-    /// The token before which it was stopped goes on.
+    /// The token before which it was stopped last was looked at then, and goes on.
     may_pass: bool,
+    /// It was counted too.
+    is_counted: bool,
     /// Tokens so far before which a block was about to react.
     reached: Position,
     /// Its past is kept, so that each token is counted.
@@ -71,12 +73,15 @@ impl Stops {
     /// Stops between two instants, if somebody has asked for it.
     pub(super) fn pause_now(&mut self) {
         if self.wish == Wish::Pause && self.stopped.is_none() {
-            self.stop(Reason::Pause, None);
+            self.stop(Reason::Pause, None, false);
         }
     }
 
-    fn stop(&mut self, reason: Reason, next: Option<(Target, Value)>) {
+    /// Stops before a token that was looked at, and counted if a block is about to react to it.
+    fn stop(&mut self, reason: Reason, next: Option<(Target, Value)>, is_counted: bool) {
         self.wish = Wish::None;
+        self.may_pass = next.is_some();
+        self.is_counted = is_counted;
         self.stopped = Some(Stop { reason, next });
     }
 
@@ -85,6 +90,7 @@ impl Stops {
         self.stopped = None;
         self.wish = Wish::None;
         self.may_pass = false;
+        self.is_counted = false;
     }
 }
 
@@ -104,8 +110,7 @@ impl Machine {
     /// Goes on at the next step of the caller.
     pub fn go_on(&mut self) {
         self.stops.wish = Wish::None;
-        let stop = self.stops.stopped.take();
-        self.stops.may_pass |= stop.is_some_and(|stop| stop.next.is_some());
+        self.stops.stopped = None;
     }
 
     /// Goes on for a step.
@@ -144,9 +149,8 @@ impl Machine {
 
     /// The moment at which it is: how many tokens came before, to which a block was about to react.
     pub fn moment(&self) -> Position {
-        let next = self.stopped().and_then(|stop| stop.next.as_ref());
-        // It was counted when it came.
-        let is_counted = next.is_some_and(|(to, _)| self.would_react(*to));
+        // One that was counted when it came is still to come.
+        let is_counted = self.stopped().is_some() && self.stops.is_counted;
         self.stops.reached.saturating_sub(is_counted.into())
     }
 
@@ -160,6 +164,7 @@ impl Machine {
         self.stops = Stops {
             is_again: true,
             may_pass: self.stops.may_pass,
+            is_counted: self.stops.is_counted,
             stopped: self.stops.stopped.take(),
             ..Stops::default()
         };
@@ -206,9 +211,11 @@ impl Machine {
         });
     }
 
-    /// Where it is stopped, in the new version: if the token that comes next is gone, so is the rest of its instant.
+    /// Where it is stopped, in the new version. If the token that comes next is gone, the other ones go on, and the first of
+    /// them is still to be looked at. So is one to which no block was about to react: in the new version one may be.
     pub(super) fn move_stop(&mut self, is_next_there: bool) {
-        self.stops.may_pass &= is_next_there;
+        self.stops.is_counted &= is_next_there;
+        self.stops.may_pass &= self.stops.is_counted;
         let next = self.deliveries.front().cloned();
         if let Some(stop) = &mut self.stops.stopped
             && stop.next.is_some()
@@ -240,7 +247,7 @@ impl Machine {
                 false => self.met(node, next.as_ref()),
             };
             if let Some(reason) = reason {
-                self.stops.stop(reason, next);
+                self.stops.stop(reason, next, reacts);
                 return true;
             }
         }

@@ -302,3 +302,47 @@ fn a_program_that_has_ended_takes_neither_breakpoints_nor_values() {
     let n = told(&mut desk, "evaluate n");
     assert!(n.contains("\"value\":\"3\""), "{n}");
 }
+
+#[test]
+fn the_token_after_one_that_is_gone_is_looked_at_like_any_other() {
+    let next = |desk: &Desk| {
+        let (machine, stop) = match desk.hindsight.shown() {
+            Some(past) => past,
+            None => (&desk.machine, desk.machine.stopped().expect("a stop")),
+        };
+        let to = stop.next.as_ref().map(|(to, _)| to.node);
+        let node = to.map(|node| machine.program().node(node));
+        (machine.now(), node.map(|node| node.id.to_string()))
+    };
+    let at = |now: u32, id: &str| (now, Some(format!("qrm:/main/{id}")));
+    let all = "S Sensor\nC Motors\nD Motors\nE Motors\nS.OUT > C.M3\nS.OUT > D.M4\nS.OUT > E.M3";
+    let (mut desk, mut robot) = (desk(all), Robot::default());
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/C");
+    told(&mut desk, "break qrm:/main/D");
+    runs(&mut desk, &mut robot, 0, 20);
+    assert_eq!(next(&desk), at(20, "C"));
+    let without = all.replace("C Motors\n", "").replace("S.OUT > C.M3\n", "");
+    let patched = desk.patch(&version(&without), &mut robot);
+    assert_eq!(patched.expect("a change").lost, 1);
+    let reached = desk.machine.reached();
+    assert_eq!(desk.machine.moment(), reached, "it was not counted");
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 30, 30);
+    assert_eq!(next(&desk), at(20, "D"));
+    assert_eq!(desk.machine.moment(), reached);
+    let points = told(&mut desk, "breakpoints");
+    assert_eq!(points.matches("\"hits\":1").count(), 2, "{points}");
+    told(&mut desk, "step");
+    runs(&mut desk, &mut robot, 40, 40);
+    assert_eq!(next(&desk), at(20, "E"));
+    // The past has all three: the last one of them is of the old version.
+    for id in ["D", "C"] {
+        told(&mut desk, "back");
+        assert_eq!(next(&desk), at(20, id));
+    }
+    for id in ["D", "E"] {
+        told(&mut desk, "step");
+        assert_eq!(next(&desk), at(20, id));
+    }
+}
