@@ -3,10 +3,10 @@
 //! Owns what of a block and its ports is told to a browser. Changes no file.
 
 use crate::error::Error;
-use crate::limits::FLOW_BLOCKS_MAX;
+use crate::limits::{FLOW_BLOCKS_MAX, FLOW_EDGES_MAX};
 use lang_dataflow::blocks::{Content, Direction, Port, Property, Row};
 use lang_dataflow::project::{Block, Diagram, Project};
-use lang_dataflow::show::{callings, picture, too_many};
+use lang_dataflow::show::{Looks, callings, picture, too_many, too_many_edges};
 use lang_diagram::read::Save;
 use lang_text::problem::Locale;
 use serde_json::{Map, Value, json};
@@ -30,7 +30,7 @@ pub(crate) fn of_text(bytes: &[u8], name: &str, locale: Locale) -> Result<Value,
     let text = std::str::from_utf8(bytes).map_err(|_| Error::Text(name.to_owned()))?;
     let read = lang_dataflow::text::read(text);
     let project = read.map_err(|problems| Error::undrawn(name, &problems, locale))?;
-    sheets(&project, name, locale)
+    sheets(&project, name, locale, &mut Looks::default())
 }
 
 /// The same of a save. What is strange about it is told when it runs.
@@ -38,15 +38,27 @@ pub(crate) fn of_text(bytes: &[u8], name: &str, locale: Locale) -> Result<Value,
 /// # Errors
 /// It is too large.
 pub(crate) fn of_save(save: &Save, name: &str, locale: Locale) -> Result<Value, Error> {
-    sheets(&lang_dataflow::read::project(save).0, name, locale)
+    let project = lang_dataflow::read::project(save).0;
+    sheets(&project, name, locale, &mut Looks::default())
 }
 
-fn sheets(project: &Project, name: &str, locale: Locale) -> Result<Value, Error> {
+/// All its sheets; what one picture has looked at for its ways is not left for the next one.
+fn sheets(
+    project: &Project,
+    name: &str,
+    locale: Locale,
+    looks: &mut Looks,
+) -> Result<Value, Error> {
     let diagrams = &project.diagrams;
     // One more for each diagram, which has a picture too.
     let count: usize = diagrams.iter().map(|one| 1 + one.blocks.len()).sum();
-    if count > FLOW_BLOCKS_MAX {
-        let words = too_many(name, count, FLOW_BLOCKS_MAX);
+    let edges: usize = diagrams.iter().map(|one| one.edges.len()).sum();
+    let refused = match (count > FLOW_BLOCKS_MAX, edges > FLOW_EDGES_MAX) {
+        (true, _) => Some(too_many(name, count, FLOW_BLOCKS_MAX)),
+        (false, true) => Some(too_many_edges(name, edges, FLOW_EDGES_MAX)),
+        (false, false) => None,
+    };
+    if let Some(words) = refused {
         return Err(Error::Diagram(words.in_locale(locale).to_owned()));
     }
     let sheet = |(at, diagram): (usize, &Diagram)| {
@@ -57,7 +69,7 @@ fn sheets(project: &Project, name: &str, locale: Locale) -> Result<Value, Error>
             "name": diagram.name,
             "main": project.main == Some(at),
             "flow": true,
-            "picture": picture(project, at, locale),
+            "picture": picture(project, at, locale, looks),
             "blocks": blocks.collect::<Map<_, _>>(),
         })
     };
@@ -137,6 +149,29 @@ mod tests {
     }
 
     #[test]
+    fn all_pictures_of_a_project_share_what_may_be_looked_at_for_ways() {
+        let row =
+            "  A: Say at 0, 0\n  B: Say at 200, 0\n  C: Say at 400, 0\n  A.CF_OUT -> C.CF_IN\n";
+        let text = format!("diagram \"a\"\n{row}\ndiagram \"a\"\n{row}");
+        let project = lang_dataflow::text::read(&text).unwrap();
+        // How many corners the edge of each picture has.
+        let corners = |looks: &mut Looks| {
+            let told = sheets(&project, "a.flow", Locale::English, looks).unwrap();
+            [0, 1].map(|at| {
+                let picture = told[at]["picture"].as_str().unwrap();
+                let (_, way) = picture.split_once("points=\"").unwrap();
+                way.split('"').next().unwrap().split(' ').count()
+            })
+        };
+        let mut looks = Looks::default();
+        let before = looks.left();
+        assert_eq!(corners(&mut looks), [6, 6]);
+        let one = (before - looks.left()) / 2;
+        assert_eq!(corners(&mut Looks::at_most(one + 1)), [6, 2]);
+        assert_eq!(corners(&mut Looks::at_most(0)), [2, 2]);
+    }
+
+    #[test]
     fn what_is_no_program_or_too_large_is_refused_in_words() {
         let cases: [(&[u8], &str); 2] = [
             (b"diagram \"a\"\n  b: None", "there is no block 'None'"),
@@ -152,6 +187,14 @@ mod tests {
         }
         let told = of_text(text.as_bytes(), "a.flow", Locale::English).unwrap_err();
         assert!(told.to_string().contains("at most 5000"), "{told}");
+        let edge = "  a.CF_OUT -> b.CF_IN\n";
+        for (count, is_drawn) in [(FLOW_EDGES_MAX, true), (FLOW_EDGES_MAX + 1, false)] {
+            let text = "diagram \"a\"\n  a: Say\n  b: Say\n".to_owned() + &edge.repeat(count);
+            let told = of_text(text.as_bytes(), "a.flow", Locale::English);
+            assert_eq!(told.is_ok(), is_drawn);
+            let why = "a.flow has 10001 edges: at most 10000 are drawn";
+            assert!(told.err().is_none_or(|told| told.to_string() == why));
+        }
         assert!(is_text("a/b.FLOW") && !is_text("flow") && !is_text("a.flow.qrs"));
     }
 }

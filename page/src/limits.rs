@@ -85,6 +85,8 @@ pub const EDITED_BYTES_MAX: usize = 128 << 10;
 pub const PROPERTY_BYTES_MAX: usize = 4 << 10;
 /// Blocks of a data-flow program that is drawn, of all its diagrams together.
 pub const FLOW_BLOCKS_MAX: usize = 5000;
+/// The same of its edges: as many as one picture has.
+pub const FLOW_EDGES_MAX: usize = 10_000;
 /// Mistakes of a diagram that are told.
 pub const MISTAKES_MAX: usize = 5;
 /// Bytes of a configuration, as the filesystem takes them.

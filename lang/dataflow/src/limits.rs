@@ -73,13 +73,16 @@ pub const SOURCE_PROPERTIES_MAX: usize = 1_000_000;
 pub const NAMES_COMPARED_MAX: usize = 5000;
 /// Blocks of one picture.
 pub const PICTURE_BLOCKS_MAX: usize = 5000;
+/// Edges of one picture.
+pub const PICTURE_EDGES_MAX: usize = 2 * PICTURE_BLOCKS_MAX;
 /// Corners of one edge in a picture.
 pub const PICTURE_CORNERS_MAX: usize = 64;
 /// Blocks beside which a way around others may run, the nearest ones.
 pub const ROUTE_BOXES_MAX: usize = 100;
 /// Corners that are tried for one such way.
 pub const ROUTE_STEPS_MAX: usize = 20_000;
-/// Blocks and empty squares that are looked at for all ways of a picture; after that edges stay as they were drawn.
+/// Blocks and empty squares that are looked at for all ways of a picture, or of all pictures of a project that are drawn together;
+/// after that edges stay as they were drawn.
 pub const ROUTE_LOOKS_MAX: usize = 4_000_000;
 /// Characters of a property in a picture.
 pub const PICTURE_PROPERTY_MAX: usize = 48;

@@ -12,7 +12,8 @@ mod tests;
 
 pub use picture::picture;
 pub use sentences::{Extent, Line, lines, sentences};
-pub use words::too_many;
+pub use ways::Looks;
+pub use words::{too_many, too_many_edges};
 
 use crate::blocks::{Content, Property};
 use crate::project::{Block, Diagram};

@@ -11,7 +11,7 @@ use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal};
 use crate::terminal::harmless;
 use clap::Args;
-use lang_dataflow::show::Extent;
+use lang_dataflow::show::{Extent, Looks};
 use lang_diagram::show::{outline::outline, picture::picture};
 use lang_text::problem::Locale;
 use std::path::{Path, PathBuf};
@@ -94,7 +94,8 @@ fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
     let names = project.diagrams.iter().map(|one| &*one.name);
     let chosen = choose(names, project.main, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {
-        let picture = lang_dataflow::show::picture(&project, chosen, args.language);
+        let mut looks = Looks::default();
+        let picture = lang_dataflow::show::picture(&project, chosen, args.language, &mut looks);
         return write_picture(args, svg, &picture);
     }
     let extent = Extent {

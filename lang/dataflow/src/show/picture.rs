@@ -3,10 +3,12 @@
 //! Owns colours, ends of edges and where texts stand. Sizes of blocks and places of ports are in their rows. All texts of
 //! the project are escaped; numbers that are none or far away are left out.
 
-use super::ways::{Obstacle, Stop, Ways};
+use super::ways::{Looks, Obstacle, Stop, Ways};
 use super::{changed, kind, shortened};
 use crate::blocks::{Direction, Does, Kind, Port, Row};
-use crate::limits::{PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX, PICTURE_PROPERTY_MAX};
+use crate::limits::{
+    PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX, PICTURE_EDGES_MAX, PICTURE_PROPERTY_MAX,
+};
 use crate::project::{Block, Edge, End, Policy, Project};
 use lang_text::problem::Locale;
 use lang_text::svg::{Svg, View};
@@ -29,7 +31,8 @@ const PORT_LETTER: f64 = 4.8;
 const OUT: f64 = 30.0;
 
 /// The picture of one diagram; of none if there is no such diagram. What is too much for one picture is left out, and said.
-pub fn picture(project: &Project, diagram: usize, locale: Locale) -> String {
+/// Who draws several has the same `looks` for all.
+pub fn picture(project: &Project, diagram: usize, locale: Locale, looks: &mut Looks) -> String {
     let mut svg = Svg::new();
     let Some(diagram) = project.diagrams.get(diagram) else {
         svg.picture(view((0.0, 0.0), (0.0, 0.0))).open();
@@ -40,7 +43,7 @@ pub fn picture(project: &Project, diagram: usize, locale: Locale) -> String {
         .iter()
         .map(|block| Frame::of(block, project, locale))
         .collect();
-    let ways = ways(&diagram.edges, blocks, &boxes);
+    let ways = ways(&diagram.edges, blocks, &boxes, looks);
     let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
     let all_boxes = boxes.iter().flat_map(Frame::corners);
     let all = all_boxes.chain(ways.iter().flat_map(|(_, way)| way.iter().copied()));
@@ -160,10 +163,11 @@ fn ways<'a>(
     edges: &'a [Edge],
     blocks: &[Block],
     boxes: &[Frame],
+    looks: &mut Looks,
 ) -> Vec<(&'a Edge, Vec<(f64, f64)>)> {
-    let mut ways = Ways::new(boxes.iter().map(Frame::obstacle).collect());
+    let mut ways = Ways::new(boxes.iter().map(Frame::obstacle).collect(), looks);
     let mut all = Vec::new();
-    for edge in edges.iter().take(2 * PICTURE_BLOCKS_MAX) {
+    for edge in edges.iter().take(PICTURE_EDGES_MAX) {
         let Some(drawn) = corners(edge, blocks) else {
             continue;
         };

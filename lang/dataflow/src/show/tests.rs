@@ -1,6 +1,6 @@
 //! Sentences and pictures of small projects, with friendly and hostile texts.
 
-use super::{Extent, picture};
+use super::{Extent, Looks};
 use crate::blocks;
 use crate::project::{Edge, End, Project};
 use crate::text;
@@ -12,6 +12,11 @@ fn project(source: &str) -> Project {
 
 fn sentences(project: &Project, locale: Locale) -> String {
     super::sentences(project, Extent::default(), locale)
+}
+
+/// The picture of one diagram, if no other one is drawn.
+fn picture(project: &Project, diagram: usize, locale: Locale) -> String {
+    super::picture(project, diagram, locale, &mut Looks::default())
 }
 
 /// A program in which there is one of all.
@@ -252,6 +257,22 @@ fn a_large_picture_looks_only_so_far_for_ways() {
     }
     let svg = picture(&project(&source), 0, Locale::English);
     assert_eq!(svg.matches("<polyline").count(), 2 * count);
+}
+
+#[test]
+fn pictures_that_are_drawn_together_share_what_may_be_looked_at() {
+    let row = project(
+        "diagram a\n A: Say at 0, 0\n B: Say at 200, 0\n C: Say at 400, 0\n A.CF_OUT -> C.CF_IN\n",
+    );
+    let mut looks = Looks::default();
+    let draw = |looks: &mut Looks| super::picture(&row, 0, Locale::English, looks);
+    let around = draw(&mut looks);
+    let cost = crate::limits::ROUTE_LOOKS_MAX - looks.left();
+    assert_eq!(draw(&mut looks), around);
+    assert_eq!(looks.left(), crate::limits::ROUTE_LOOKS_MAX - 2 * cost);
+    let mut few = Looks::at_most(cost + 1);
+    assert_eq!(draw(&mut few), around);
+    assert_eq!(points(&draw(&mut few)).len(), 2);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Ways of edges in a picture: as they were drawn, unless they run through a block; then around it, by lines beside blocks.
 //!
-//! Owns which ways are bad, and how much is looked at for better ones: then edges stay as they were drawn. The same picture
-//! has the same ways each time. Knows neither ports nor colours.
+//! Owns which ways are bad, and how much is looked at for better ones: then edges stay as they were drawn. The same pictures
+//! in the same order have the same ways each time. Knows neither ports nor colours.
 
 mod search;
 
@@ -74,22 +74,46 @@ enum Seen {
     Block,
 }
 
+/// How much may still be looked at for ways: of one picture, or of all those that are drawn one after the other, so that many
+/// small ones take no longer than a large one.
+#[derive(Debug)]
+pub struct Looks {
+    left: usize,
+}
+
+impl Looks {
+    /// So many; without any, all edges stay as they were drawn.
+    pub const fn at_most(left: usize) -> Self {
+        Self { left }
+    }
+
+    /// How many are left.
+    pub const fn left(&self) -> usize {
+        self.left
+    }
+}
+
+impl Default for Looks {
+    fn default() -> Self {
+        Self::at_most(ROUTE_LOOKS_MAX)
+    }
+}
+
 /// The blocks of a picture, by the squares that they are in.
-pub(super) struct Ways {
+pub(super) struct Ways<'a> {
     blocks: Vec<Obstacle>,
     squares: HashMap<(i64, i64), Vec<u32>>,
     /// The lanes of ports from which edges run around blocks.
     lanes: HashMap<Port, usize>,
-    /// What may still be looked at.
-    left: usize,
+    looks: &'a mut Looks,
 }
 
 fn square(number: f64) -> i64 {
     (number / SQUARE).floor() as i64
 }
 
-impl Ways {
-    pub fn new(blocks: Vec<Obstacle>) -> Self {
+impl<'a> Ways<'a> {
+    pub fn new(blocks: Vec<Obstacle>, looks: &'a mut Looks) -> Self {
         let mut squares: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
         for (index, block) in (0..).zip(&blocks) {
             let [low, high] = block.grown(CLEAR);
@@ -103,7 +127,7 @@ impl Ways {
             blocks,
             squares,
             lanes: HashMap::new(),
-            left: ROUTE_LOOKS_MAX,
+            looks,
         }
     }
 
@@ -203,7 +227,10 @@ impl Ways {
         let squares = count(&columns)
             .and_then(|columns| Ok(columns.saturating_mul(count(&rows)?)))
             .unwrap_or(usize::MAX);
-        self.left = self.left.saturating_sub(squares.min(self.blocks.len()));
+        self.looks.left = self
+            .looks
+            .left
+            .saturating_sub(squares.min(self.blocks.len()));
         if squares > self.blocks.len() {
             let is_in = |block: &Obstacle| {
                 let (right, bottom) = block.high;
@@ -242,11 +269,11 @@ impl Ways {
             for y in square(one.min(other))..=square(one.max(other)) {
                 let blocks = self.squares.get(&(x, y)).map_or(&[][..], Vec::as_slice);
                 let cost = blocks.len() + 1;
-                if self.left < cost {
-                    self.left = 0;
+                if self.looks.left < cost {
+                    self.looks.left = 0;
                     return seen;
                 }
-                self.left -= cost;
+                self.looks.left -= cost;
                 for &index in blocks {
                     let block = &self.blocks[index as usize];
                     let Some(space) = space(index as usize) else {

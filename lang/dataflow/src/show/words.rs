@@ -10,6 +10,14 @@ pub fn too_many(name: &str, count: usize, most: usize) -> Words {
     )
 }
 
+/// The same, because of its edges.
+pub fn too_many_edges(name: &str, count: usize, most: usize) -> Words {
+    Words::new(
+        format!("{name} has {count} edges: at most {most} are drawn"),
+        format!("{name}: связей {count}, а рисуется не больше {most}"),
+    )
+}
+
 /// Words between blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Word {

@@ -17,7 +17,7 @@ type Node = (usize, usize, bool);
 
 /// The way, from the first place to the second; none if there is none, or it takes too long to find one.
 pub(super) fn search(
-    ways: &mut Ways,
+    ways: &mut Ways<'_>,
     near: &[usize],
     [from, to]: [Place; 2],
     beside: f64,
@@ -55,7 +55,7 @@ pub(super) fn search(
                 order += 1;
             }
         }
-        if ways.left == 0 {
+        if ways.looks.left == 0 {
             return None;
         }
     }
@@ -86,7 +86,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(ways: &Ways, near: &[usize], ends: [Place; 2], beside: f64) -> Self {
+    fn new(ways: &Ways<'_>, near: &[usize], ends: [Place; 2], beside: f64) -> Self {
         let (mut xs, mut ys) = (Vec::new(), Vec::new());
         for (x, y) in ends {
             xs.push(x);
@@ -136,7 +136,7 @@ impl Lines {
     }
 
     /// What is between two crossings that are beside each other.
-    fn look(&mut self, ways: &mut Ways, one: Node, other: Node) -> Seen {
+    fn look(&mut self, ways: &mut Ways<'_>, one: Node, other: Node) -> Seen {
         let first = (one.0.min(other.0), one.1.min(other.1), other.2);
         if let Some(seen) = self.seen.get(&first) {
             return *seen;

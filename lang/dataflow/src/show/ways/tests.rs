@@ -42,7 +42,7 @@ fn a_way_goes_around_what_is_between_and_leaves_by_the_side_of_its_port() {
     let blocks = vec![block(0.0, 0.0), block(200.0, 0.0), block(400.0, 0.0)];
     let ends = [port(0, (98.0, 50.0)), port(2, (402.0, 50.0))];
     let drawn = vec![ends[0].at, ends[1].at];
-    let way = Ways::new(blocks.clone()).way(drawn.clone(), ends, None);
+    let way = Ways::new(blocks.clone(), &mut Looks::default()).way(drawn.clone(), ends, None);
     let wanted = [
         (98.0, 50.0),
         (110.0, 50.0),
@@ -53,16 +53,17 @@ fn a_way_goes_around_what_is_between_and_leaves_by_the_side_of_its_port() {
     ];
     assert_eq!(way, wanted);
     // Edges of one port share a line, those of another one have their own; and what is not in the way.
-    let mut ways = Ways::new(blocks.clone());
+    let mut looks = Looks::default();
+    let mut ways = Ways::new(blocks.clone(), &mut looks);
     for (from, beside) in [((0, 1), 10.0), ((0, 2), 14.0), ((0, 1), 10.0)] {
         let way = ways.way(drawn.clone(), ends, Some(from));
         assert_eq!(way[2], (100.0 + beside, -beside));
     }
-    let mut free = Ways::new(vec![blocks[0], block(200.0, 300.0), blocks[2]]);
+    let mut free = Ways::new(vec![blocks[0], block(200.0, 300.0), blocks[2]], &mut looks);
     assert_eq!(free.way(drawn.clone(), ends, None), drawn);
     // Nothing may be looked at any more.
-    let mut tired = Ways::new(blocks);
-    tired.left = 0;
+    let mut none = Looks::at_most(0);
+    let mut tired = Ways::new(blocks, &mut none);
     assert_eq!(tired.way(drawn.clone(), ends, None), drawn);
 }
 
@@ -84,7 +85,9 @@ fn a_way_that_there_is_not_stays_as_it_was_drawn() {
     }
     let ends = [port(0, (98.0, 50.0)), port(1, (602.0, 50.0))];
     let drawn = vec![ends[0].at, ends[1].at];
-    assert_eq!(Ways::new(blocks).way(drawn.clone(), ends, None), drawn);
+    let mut looks = Looks::default();
+    let mut ways = Ways::new(blocks, &mut looks);
+    assert_eq!(ways.way(drawn.clone(), ends, None), drawn);
 }
 
 #[test]
@@ -95,8 +98,9 @@ fn one_that_is_far_away_does_not_use_up_what_may_be_looked_at() {
         block(400.0, 0.0),
         block(190_000.0, 190_000.0),
     ];
-    let mut ways = Ways::new(blocks);
+    let mut looks = Looks::default();
+    let mut ways = Ways::new(blocks, &mut looks);
     let far = [port(0, (2.0, 50.0)), port(3, (190_098.0, 190_050.0))];
     ways.way(vec![far[0].at, far[1].at], far, None);
-    assert!(ways.left > ROUTE_LOOKS_MAX / 2, "{}", ways.left);
+    assert!(looks.left > ROUTE_LOOKS_MAX / 2, "{}", looks.left);
 }
