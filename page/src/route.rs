@@ -23,6 +23,8 @@ use std::collections::HashMap;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use tokio::sync::Semaphore;
+use tokio::task::JoinError;
 
 /// All addresses.
 pub fn router(shared: Arc<Shared>) -> Router {
@@ -163,9 +165,7 @@ async fn with_files<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Error> + Send + 'static,
     answer: impl FnOnce(T) -> Response,
 ) -> Response {
-    // Nobody closes the semaphore.
-    let _turn = shared.large.acquire().await;
-    match tokio::task::spawn_blocking(work).await {
+    match in_turn(shared.large.clone(), work).await {
         Ok(Ok(done)) => answer(done),
         Ok(Err(error @ (Error::Name(_) | Error::File(..)))) => {
             text(StatusCode::NOT_FOUND, error.to_string())
@@ -176,6 +176,21 @@ async fn with_files<T: Send + 'static>(
             "the page could not be made",
         ),
     }
+}
+
+/// Does one of the large things on another thread. It has its turn until it is done, even if nobody waits for it any more: a
+/// browser that goes away and asks again does not get more threads.
+async fn in_turn<T: Send + 'static>(
+    large: Arc<Semaphore>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, JoinError> {
+    // Nobody closes the semaphore.
+    let turn = large.acquire_owned().await;
+    let work = move || {
+        let _turn = turn;
+        work()
+    };
+    tokio::task::spawn_blocking(work).await
 }
 
 fn json(value: serde_json::Value) -> Response {
@@ -271,4 +286,34 @@ async fn table(State(shared): State<Arc<Shared>>) -> Response {
         (CACHE_CONTROL, "no-store"),
     ];
     with_files(&shared, work, |page| (kind, page).into_response()).await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::sync::oneshot;
+
+    #[test]
+    fn what_nobody_waits_for_has_its_turn_until_it_is_done() {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .build()
+            .unwrap();
+        runtime.block_on(async {
+            let large = Arc::new(Semaphore::new(1));
+            let (begins, begun) = oneshot::channel();
+            let (end, ends) = oneshot::channel::<()>();
+            let work = move || {
+                begins.send(()).unwrap();
+                ends.blocking_recv().unwrap();
+            };
+            let asked = tokio::spawn(in_turn(large.clone(), work));
+            begun.await.unwrap();
+            asked.abort();
+            assert!(asked.await.unwrap_err().is_cancelled());
+            assert_eq!(large.available_permits(), 0);
+            end.send(()).unwrap();
+            drop(large.acquire().await.unwrap());
+            assert_eq!(in_turn(large, || 7).await.unwrap(), 7);
+        });
+    }
 }
