@@ -65,6 +65,22 @@ it('a program that begins anew is heard anew', () => {
   expect([...reactions.hear(told(20, { a: 2 }))]).toEqual([]);
 });
 
+it('nothing is lit in the past, and nothing is new when the present comes back', () => {
+  const reactions = new Reactions();
+  reactions.hear(told(5000, { a: 10, b: 1 }));
+  expect([...reactions.hear(told(5100, { a: 11, b: 1 }))]).toEqual(['a']);
+  for (const state of ['searching', 'past']) {
+    const past = stateOf({ state, ms: 5090, reacted: [], ports: [] });
+    expect([...reactions.hear(past)]).toEqual([]);
+  }
+  expect([...reactions.hear(told(5100, { a: 11, b: 1 }))]).toEqual(['a']);
+  expect([...reactions.hear(told(5100 + SEEN_MS + 1, { a: 11, b: 1 }))]).toEqual([]);
+  // Who first looks in the past has heard nothing of the present.
+  const late = new Reactions();
+  late.hear(stateOf({ state: 'past', ms: 50, reacted: [], ports: [] }));
+  expect([...late.hear(told(100, { a: 7 }))]).toEqual([]);
+});
+
 it('a text for a picture is one short line', () => {
   expect(short('  1\n2 ', 12)).toBe('1 2');
   expect(short('x'.repeat(1000), 12)).toBe(`${'x'.repeat(12)}...`);

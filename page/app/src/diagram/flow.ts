@@ -62,6 +62,8 @@ export class Reactions {
       this.#isFirst = true;
       return new Set();
     }
+    // Nothing is said of the past: what was heard before it still stands when the present comes back.
+    if (told.state === 'past' || told.state === 'searching') return new Set();
     const now = told.ms ?? 0;
     const counts = new Map<string, number>();
     for (const { id, count } of [...(told.reacted ?? []), ...(told.ports ?? [])])

@@ -7,7 +7,7 @@ import { PICTURE_ELEMENTS_MAX } from '../limits';
 export interface SheetPicture {
   name: string;
   main: boolean;
-  /** Of data flow: its blocks have ports, and a program of it has neither threads nor a past. */
+  /** Of data flow: its blocks have ports, and a program of it has no threads. */
   flow: boolean;
   /** SVG, in which each block is a group with its `data-id`. */
   picture: string;
