@@ -22,6 +22,8 @@ pub const QUEUED_CELLS_MAX: u32 = 1_000_000;
 pub const WRITER_WALKS_MAX: usize = 2_000_000;
 /// Tokens that are on their way within one instant.
 pub const DELIVERIES_MAX: usize = 1_000_000;
+/// Places for them in the beginning; a power of two.
+pub const DELIVERIES_MIN: usize = 16;
 /// Reactions of blocks within one instant.
 pub const FIRINGS_MAX: u32 = 10_000;
 /// Items of a list that is a token.

@@ -4,6 +4,7 @@
 //! whose parts were stored just before, and a value that is moved through a queue at once was such a load three times. The
 //! benchmark `converter` shows it. Knows no limit: the machine has one.
 
+use crate::limits::DELIVERIES_MIN;
 use crate::program::Target;
 use lang_expr::Value;
 
@@ -19,8 +20,6 @@ pub(super) struct Deliveries {
 
 /// A place without a token.
 const EMPTY: (Target, Value) = (Target { node: 0, port: 0 }, Value::Nil);
-/// Places of the smallest ring.
-const PLACES_MIN: usize = 16;
 
 impl Deliveries {
     pub fn len(&self) -> usize {
@@ -88,7 +87,7 @@ impl Deliveries {
     fn grow(&mut self) {
         self.places.rotate_left(self.first);
         self.first = 0;
-        let count = (2 * self.places.len()).max(PLACES_MIN);
+        let count = (2 * self.places.len()).max(DELIVERIES_MIN);
         self.places.resize(count, EMPTY);
     }
 
@@ -163,7 +162,7 @@ mod tests {
         let copy = ring.clone();
         let texts = |tokens: Vec<&(Target, Value)>| format!("{tokens:?}");
         assert_eq!(texts(copy.iter().collect()), texts(queue.iter().collect()));
-        assert!(copy.places.len() < 2 * copy.len().max(PLACES_MIN));
+        assert!(copy.places.len() < 2 * copy.len().max(DELIVERIES_MIN));
         ring.clear();
         assert_eq!(
             (ring.len(), ring.front().is_none(), ring.pop().is_none()),
