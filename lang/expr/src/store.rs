@@ -48,11 +48,12 @@ impl Store {
     #[inline]
     pub fn set_like(&mut self, slot: Slot, value: &Value) -> bool {
         let place = self.values.get_mut(slot as usize).and_then(Option::as_mut);
-        match (place, value) {
-            (Some(Value::Int(place)), Value::Int(number)) => *place = *number,
-            (Some(Value::Float(place)), Value::Float(number)) => *place = *number,
-            (Some(Value::Bool(place)), Value::Bool(truth)) => *place = *truth,
-            (_, _) => return false,
+        match (value, place) {
+            (Value::Int(number), Some(Value::Int(place))) => *place = *number,
+            (Value::Float(number), Some(Value::Float(place))) => *place = *number,
+            (Value::Bool(truth), Some(Value::Bool(place))) => *place = *truth,
+            (Value::Int(_) | Value::Float(_) | Value::Bool(_), Some(_) | None)
+            | (Value::Nil | Value::Text(_) | Value::Unset | Value::List(_), _) => return false,
         }
         self.note(slot);
         true

@@ -40,11 +40,13 @@ impl Machine {
         let Memory::Hold { kept, .. } = &self.states[to.node as usize].memory else {
             return;
         };
-        let own: u32 = kept.iter().map(|(_, value)| value.cells()).sum();
-        let others = self.queued.saturating_sub(own);
-        if others.saturating_add(value.cells()) > limits::QUEUED_CELLS_MAX {
-            self.lose(to, words::kept_too_heavy(), env);
-            return;
+        if self.queued.saturating_add(value.cells()) > limits::QUEUED_CELLS_MAX {
+            let own: u32 = kept.iter().map(|(_, value)| value.cells()).sum();
+            let others = self.queued.saturating_sub(own);
+            if others.saturating_add(value.cells()) > limits::QUEUED_CELLS_MAX {
+                self.lose(to, words::kept_too_heavy(), env);
+                return;
+            }
         }
         loop {
             let Memory::Hold { kept, .. } = &mut self.states[to.node as usize].memory else {
