@@ -63,17 +63,24 @@ const WAIT_DATA: u8 = 2;
 
 pub(super) fn look(program: &Program, found: &mut Found) {
     let rates = infer(program);
+    let may_end = after_loops(program);
     for id in 0..program.nodes.len() as NodeId {
         let node = program.node(id);
         if node.waits() {
             look_at_join(program, id, &rates, found);
         }
-        look_at_time(program, id, &rates, found);
+        look_at_time(program, id, (&rates, may_end[id as usize]), found);
     }
 }
 
-/// A wait or a window whose time is none, or too short. One that a token brings is not known.
-fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found) {
+/// A wait or a window whose time is none, or too short; `may_end`: what comes to it may end soon. A time that a token brings is
+/// not known.
+fn look_at_time(
+    program: &Program,
+    id: NodeId,
+    (rates, may_end): (&Rates, bool),
+    found: &mut Found,
+) {
     let node = program.node(id);
     let time = node.row.port("TIME");
     if time.is_some_and(|port| node.is_linked(port)) {
@@ -88,7 +95,7 @@ fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found)
         } else if let Rate::Every(period) = came
             && keeps
             && period < takes
-            && !comes_from_a_loop(program, id)
+            && !may_end
         {
             let place = port_place(program, id, WAIT_DATA);
             found.warn(place, words::wait_falls_behind(period, takes));
@@ -107,26 +114,25 @@ fn look_at_time(program: &Program, id: NodeId, rates: &Rates, found: &mut Found)
     }
 }
 
-/// Whether a loop, which ends, has a part in what comes to a node; what comes through a call is not known and may.
-fn comes_from_a_loop(program: &Program, id: NodeId) -> bool {
-    let mut givers: HashMap<NodeId, Vec<NodeId>> = HashMap::new();
-    for from in 0..program.nodes.len() as NodeId {
+/// By node: whether a loop, which ends, has a part in what comes to it; what comes through a call is not known and may.
+fn after_loops(program: &Program) -> Vec<bool> {
+    let mut is_after = vec![false; program.nodes.len()];
+    let gives = |id: &NodeId| {
+        let op = &program.node(*id).op;
+        matches!(
+            op,
+            Op::Flow(Flow::Loop { .. } | Flow::InPort | Flow::Call(_))
+        )
+    };
+    let mut to_see: Vec<NodeId> = (0..program.nodes.len() as NodeId).filter(gives).collect();
+    while let Some(from) = to_see.pop() {
         for (_, to) in program.edges(from) {
-            givers.entry(to.node).or_default().push(from);
-        }
-    }
-    let mut to_see = vec![id];
-    while let Some(id) = to_see.pop() {
-        // Taken away, so that a cycle ends.
-        for from in givers.remove(&id).unwrap_or_default() {
-            let op = &program.node(from).op;
-            if let Op::Flow(Flow::Loop { .. } | Flow::InPort | Flow::Call(_)) = op {
-                return true;
+            if !std::mem::replace(&mut is_after[to.node as usize], true) {
+                to_see.push(to.node);
             }
-            to_see.push(from);
         }
     }
-    false
+    is_after
 }
 
 /// A block that waits for streams of which one has more tokens than another.

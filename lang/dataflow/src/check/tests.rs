@@ -436,6 +436,23 @@ fn a_wait_that_keeps_more_than_it_lets_go_is_told() {
 }
 
 #[test]
+fn many_waits_that_keep_cost_what_they_are() {
+    let mut text = "A Sensor\n".to_owned();
+    let mut edges = String::new();
+    for number in 0..20_000 {
+        text += &format!("W{number} Wait and send {{time=100 | keep=true}}\n");
+        edges += &format!("A.OUT > W{number}.DATA\n");
+    }
+    // Looking for loops before each of them would be half a milliard steps.
+    let found = told(&(text + &edges));
+    assert!(
+        found[0].contains("warning: main: Wait and send"),
+        "{}",
+        found[0]
+    );
+}
+
+#[test]
 fn loops_without_a_body_or_without_a_number_are_told() {
     only(
         "L Loop\nS Say\nL.CF_OUT > S.CF_IN",

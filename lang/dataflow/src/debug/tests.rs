@@ -58,6 +58,15 @@ fn version(text: &str) -> Version {
 
 const SLOW: &str = "A Sensor\nF Text programming {IO0=n = n + 1; I0 * k}\nV Variable {variable=n = 0; k = 2}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
 
+/// That program, whose sensor reads 5.
+fn slow() -> (Desk, Robot) {
+    let robot = Robot {
+        a1: 5,
+        ..Robot::default()
+    };
+    (desk(SLOW), robot)
+}
+
 fn runs(desk: &mut Desk, robot: &mut Robot, from: u32, to: u32) {
     for now in (from..=to).step_by(10) {
         desk.step(now, robot, &mut Deaf);
@@ -75,13 +84,7 @@ fn told(desk: &mut Desk, order: &str) -> String {
 
 #[test]
 fn a_program_that_is_watched_tells_its_variables_and_its_ports() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 20);
     let first = told(&mut desk, "look");
     assert!(
@@ -110,13 +113,7 @@ fn a_program_that_is_watched_tells_its_variables_and_its_ports() {
 
 #[test]
 fn a_breakpoint_stops_before_the_token_and_motors_are_told_after_it() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     let added = told(&mut desk, "break qrm:/main/M\nif data > 15");
     assert!(added.contains("\"number\":1"), "{added}");
@@ -158,13 +155,7 @@ fn a_breakpoint_stops_before_the_token_and_motors_are_told_after_it() {
 
 #[test]
 fn a_step_out_goes_to_the_next_instant() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     desk.stop_first();
     runs(&mut desk, &mut robot, 0, 50);
     assert!(desk.is_stopped());
@@ -225,13 +216,7 @@ fn what_cannot_be_done_is_refused_with_a_reason() {
 
 #[test]
 fn a_condition_that_cannot_be_computed_stops_and_says_so() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     let unknown = told(&mut desk, "break qrm:/main/M\nif dta > 15");
     assert!(unknown.contains("\"done\":false"), "{unknown}");
@@ -249,13 +234,7 @@ fn a_condition_that_cannot_be_computed_stops_and_says_so() {
 
 #[test]
 fn a_variable_that_is_set_counts_at_the_next_reaction() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 20);
     assert_eq!(last(&robot), "power M3 10");
     assert!(told(&mut desk, "set k=k + 1").contains("\"value\":\"3\""));

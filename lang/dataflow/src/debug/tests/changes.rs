@@ -4,13 +4,7 @@ use super::*;
 
 #[test]
 fn a_new_version_goes_on_where_the_old_one_was() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 40);
     let faster = SLOW
         .replace("I0 * k", "I0 * k + 1")
@@ -90,13 +84,7 @@ fn tokens_that_a_wait_keeps_outlive_a_change_and_are_counted() {
 
 #[test]
 fn a_version_that_is_wrong_changes_nothing() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 40);
     let wrong = Version::of(&of("A Sensor\nM Motors\nF Zip flows\nF.OUT > M.M3"));
     assert!(matches!(wrong, Err(NoVersion::Mistakes(_))));
@@ -121,13 +109,7 @@ fn a_version_that_is_wrong_changes_nothing() {
 
 #[test]
 fn a_program_that_is_stopped_is_changed_where_it_stands() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     told(&mut desk, "break qrm:/main/M");
     runs(&mut desk, &mut robot, 0, 20);
@@ -155,13 +137,7 @@ fn a_program_that_is_stopped_is_changed_where_it_stands() {
 
 #[test]
 fn a_version_that_gives_a_variable_another_type_is_refused() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 40);
     let other = SLOW
         .replace("n = 0; k = 2", "n = 0; k = 'two'")
@@ -195,13 +171,7 @@ fn a_version_that_gives_a_variable_another_type_is_refused() {
 
 #[test]
 fn a_version_whose_variables_get_their_values_later_is_taken() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 40);
     let other = "A Sensor\nP Text programming {IO0=kp = 0.5; e = I0 | IO1=kp*e + 20}\nM Motors\nA.OUT > P.I0\nP.O1 > M.M3";
     desk.patch(&version(other), &mut robot).expect("a change");

@@ -178,13 +178,7 @@ fn an_instant_back_and_a_time_and_the_first_moment_are_found() {
 
 #[test]
 fn breakpoints_and_changes_are_found_backwards_and_forwards() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     told(&mut desk, "break qrm:/main/M\nif n % 10 == 0 and data > 3");
     told(&mut desk, "break qrm:/main/M\nlog {n}");
@@ -226,13 +220,7 @@ fn breakpoints_and_changes_are_found_backwards_and_forwards() {
 
 #[test]
 fn what_a_person_changes_and_a_new_version_stay_where_they_were() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     told(&mut desk, "break qrm:/main/M");
     let mut now = 0;
@@ -329,13 +317,7 @@ fn all_that_a_copy_holds_is_counted() {
 
 #[test]
 fn a_long_way_back_is_given_up_and_one_that_is_not_finds_its_end() {
-    let (mut desk, mut robot) = (
-        desk(SLOW),
-        Robot {
-            a1: 5,
-            ..Robot::default()
-        },
-    );
+    let (mut desk, mut robot) = slow();
     told(&mut desk, "attach");
     told(&mut desk, "watch k");
     let mut now = 0;
@@ -350,7 +332,7 @@ fn a_long_way_back_is_given_up_and_one_that_is_not_finds_its_end() {
     let given_up = told(&mut desk, "pause");
     assert!(given_up.contains("\"state\":\"stopped\""), "{given_up}");
     told(&mut desk, "back continue");
-    // Who has the desk goes on with it between other things.
+    // The owner of the desk goes on with it between other things.
     while desk.hindsight.is_searching() {
         desk.step(now, &mut robot, &mut Deaf);
     }
