@@ -64,6 +64,7 @@ test(
     await page.getByText(/Stopped, motors at rest.*paused/).waitFor();
     await page.getByRole('button', { name: 'Step back' }).press('Enter');
     await page.getByText(/^In the past/).waitFor();
+    await page.getByText('The past has no tokens at ports.').waitFor();
     await page.getByRole('button', { name: 'To the present' }).press('Enter');
     await page.getByText(/^Stopped, motors at rest/).waitFor();
     await page.getByRole('button', { name: 'Without debugger' }).press('Enter');

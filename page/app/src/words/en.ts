@@ -228,6 +228,7 @@ export const en = {
   waitingAt: (count: number) => `${count} wait`,
   lostAt: (count: number) => `${count} lost`,
   noTokens: 'No token waits here, and none was given lately.',
+  noTokensThere: 'The past has no tokens at ports.',
   morePorts: (count: number) => `And ${count} more: choose a block for its ports.`,
   leftOut: (count: number) =>
     `The robot does not tell everything of so large a program: ${count} values are missing.`,
