@@ -123,9 +123,10 @@ export class Robot {
   }
 
   /** Ends it and starts it again at the same port. */
-  async restart() {
+  async restart(whileGone = async () => {}) {
     const port = new URL(this.url).port;
     await this.#end();
+    await whileGone();
     this.#said = '';
     this.#args.push('--page-port', port);
     this.#child = this.#start();

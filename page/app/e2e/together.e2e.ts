@@ -24,9 +24,8 @@ test('one is in control, the other one takes it', async () => {
 test('a robot that was started again is there again without a reload', async () => {
   const page = await there.look.open(`${there.robot.url}#log`);
   await page.getByText('Nobody is in control').waitFor();
-  const restarted = there.robot.restart();
-  await page.getByText('The page is not connected').waitFor();
-  await restarted;
+  // A robot may be back sooner than anybody looks, so it stays away until the page has said so.
+  await there.robot.restart(() => page.getByText('The page is not connected').waitFor());
   await page.getByText('The page is not connected').waitFor({ state: 'detached' });
   await page.getByRole('button', { name: 'Take control' }).click();
   await page.getByText('You are in control').waitFor();
