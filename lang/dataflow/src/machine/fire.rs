@@ -159,7 +159,9 @@ impl Machine {
         debug_assert!(!waits, "its tokens are queued");
         let at = (usize::from(to.port) - FUNCTION_IN) / 2;
         self.bind(to.node, at, &value);
-        self.compute(to.node, at, texts[at], env)?;
+        if let Some(text) = texts[at] {
+            self.compute(to.node, at, text, env)?;
+        }
         self.done(to.node, env)
     }
 
@@ -170,7 +172,10 @@ impl Machine {
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
         for (at, text) in texts.iter().enumerate() {
-            self.compute(id, at, *text, env)?;
+            // Most functions have one text: no call for the others.
+            if let Some(text) = *text {
+                self.compute(id, at, text, env)?;
+            }
         }
         self.done(id, env)
     }
@@ -179,17 +184,12 @@ impl Machine {
         &mut self,
         id: NodeId,
         at: usize,
-        text: Option<Formula>,
+        text: Formula,
         env: &mut Env<'_>,
     ) -> Result<(), Halt> {
-        match text {
-            None => Ok(()),
-            Some(text) => {
-                let mut value = Value::Nil;
-                self.evaluate_to(text, &mut value, env)?;
-                self.send_made(id, FUNCTION_OUT + 2 * at as u8, &value, env)
-            }
-        }
+        let mut value = Value::Nil;
+        self.evaluate_to(text, &mut value, env)?;
+        self.send_made(id, FUNCTION_OUT + 2 * at as u8, &value, env)
     }
 
     /// Sends a value that was made here, unless it is too large for a token.
