@@ -42,6 +42,22 @@ pub(super) struct DiagramDraft<'a> {
     pub broken: Vec<&'a str>,
 }
 
+impl DiagramDraft<'_> {
+    /// Without a name, blocks and edges.
+    pub fn new(at: usize, kind: DiagramKind) -> Self {
+        Self {
+            at,
+            kind,
+            name: String::new(),
+            ids: IdsDraft::default(),
+            is_run: false,
+            blocks: Vec::new(),
+            edges: Vec::new(),
+            broken: Vec::new(),
+        }
+    }
+}
+
 /// What a block calls.
 #[derive(Debug)]
 pub(super) enum Called {

@@ -9,7 +9,7 @@ use super::draft::{
     BlockDraft, Called, DiagramDraft, EdgeDraft, EndDraft, IdsDraft, Placed, PortDraft,
     ProjectDraft,
 };
-use super::lexer::{Lexed, Lexer, Sign, Token};
+use super::lexer::{Lexed, Lexer, Sign, Token, Wrong};
 use super::words::{self, Wanted};
 use super::{error_at, ids, tell};
 use crate::blocks::{self, Row};
@@ -23,6 +23,8 @@ pub(super) const KIT: &str = "lastKitId";
 /// The end of an edge that is at no block.
 pub(super) const NOWHERE: &str = "nowhere";
 
+/// How far a colon is looked for after a word that begins no line.
+const LONG_LABEL_TOKENS: usize = 8;
 /// Words that begin a line.
 const STARTS: [&str; 6] = ["kit", "meta", "run", "diagram", "subprogram", NOWHERE];
 const DIAGRAM_CLAUSES: [&str; 3] = ["run", "id", "logical"];
@@ -47,6 +49,7 @@ pub(super) fn parse<'a>(text: &'a str, problems: &mut Vec<Problem>) -> ProjectDr
         properties: 0,
         is_list: false,
         is_over: false,
+        homeless: None,
     };
     while !parser.is_over && problems.len() < lang_text::limits::PROBLEMS {
         if parser.next_is(|token| *token == Token::Line) {
@@ -57,6 +60,9 @@ pub(super) fn parse<'a>(text: &'a str, problems: &mut Vec<Problem>) -> ProjectDr
             tell(problems, problem);
             parser.recover();
         }
+    }
+    if let Some(at) = parser.homeless {
+        tell(problems, error_at(at, words::no_diagram()));
     }
     // Of what is too much, nothing is looked up.
     match parser.is_over {
@@ -78,6 +84,8 @@ struct Parser<'a> {
     is_list: bool,
     /// Whether there is so much that the rest is not read.
     is_over: bool,
+    /// Where the first block or edge stands that is below no diagram.
+    homeless: Option<usize>,
 }
 
 impl<'a> Parser<'a> {
@@ -150,8 +158,34 @@ impl<'a> Parser<'a> {
                 self.take();
                 Err(self.refused(|_| words::no_port(label)))
             }
+            _ if self.is_long_label() => Err(self.refused(|_| words::long_label())),
             _ => Err(self.refused(|token| words::no_line(token, STARTS))),
         }
+    }
+
+    /// Whether words, numbers or stray signs stand before a colon: a label of several.
+    fn is_long_label(&mut self) -> bool {
+        let mut count = 1;
+        while count < LONG_LABEL_TOKENS {
+            match self.peek(count).token {
+                Token::Sign(Sign::Colon) => return count > 1,
+                Token::Word(_) | Token::Number(_) | Token::Wrong(Wrong::Stray(_)) => count += 1,
+                Token::Text(_)
+                | Token::Sign(
+                    Sign::Comma
+                    | Sign::Semicolon
+                    | Sign::Equals
+                    | Sign::Dot
+                    | Sign::Arrow
+                    | Sign::Open
+                    | Sign::Close,
+                )
+                | Token::Line
+                | Token::End
+                | Token::Wrong(Wrong::Quotes | Wrong::Backticks | Wrong::Escape) => return false,
+            }
+        }
+        false
     }
 
     /// The end of a line that may have these words.
@@ -243,16 +277,7 @@ impl<'a> Parser<'a> {
             return Err(error_at(at, words));
         }
         // What follows belongs to it, whatever is wrong with its line.
-        self.draft.diagrams.push(DiagramDraft {
-            at,
-            kind,
-            name: String::new(),
-            ids: IdsDraft::default(),
-            is_run: false,
-            blocks: Vec::new(),
-            edges: Vec::new(),
-            broken: Vec::new(),
-        });
+        self.draft.diagrams.push(DiagramDraft::new(at, kind));
         let name = self.text(Wanted::Name)?;
         let mut ids = IdsDraft::default();
         let mut is_run = false;
@@ -274,12 +299,19 @@ impl<'a> Parser<'a> {
         self.line_end(&DIAGRAM_CLAUSES)
     }
 
+    /// One mistake where the line of a diagram is forgotten, and not one for each line below it.
+    fn need_diagram(&mut self, at: usize) {
+        if self.draft.diagrams.is_empty() {
+            self.homeless = Some(at);
+            let diagram = DiagramDraft::new(at, DiagramKind::Main);
+            self.draft.diagrams.push(diagram);
+        }
+    }
+
     fn block(&mut self, label: &'a str) -> Result<(), Problem> {
         let at = self.take().at;
         self.take();
-        if self.draft.diagrams.is_empty() {
-            return Err(error_at(at, words::no_diagram()));
-        }
+        self.need_diagram(at);
         if self.blocks >= limits::SOURCE_BLOCKS_MAX {
             self.is_over = true;
             let words = words::too_many_blocks(limits::SOURCE_BLOCKS_MAX);
@@ -347,11 +379,8 @@ impl<'a> Parser<'a> {
             return Ok((Some(row), row.element.to_owned()));
         }
         // The first word of several, perhaps.
-        let known = || {
-            let names = |row: &'static Row| [row.shown, row.russian, row.element];
-            blocks::table().flat_map(names)
-        };
-        let unknown = words::unknown_block(&name, known());
+        let names = |row: &'static Row| [row.shown, row.russian, row.element];
+        let unknown = words::unknown_block(&name, blocks::table().flat_map(names));
         while let Some(word) = self.word().filter(|_| is_word && name.len() < 100) {
             self.take();
             name = format!("{name} {word}");
@@ -379,13 +408,7 @@ impl<'a> Parser<'a> {
                 .row
                 .filter(|row| is_word && row.property(&name).is_none())
             {
-                let shown = row.properties.iter().find(|one| one.shown == name);
-                let known = row.properties.iter().map(|one| one.name);
-                let words = match shown {
-                    Some(one) => words::shown_property(one.shown, one.name),
-                    None => words::unknown_property(row.shown, &name, known),
-                };
-                return Err(error_at(at, words));
+                return Err(error_at(at, no_property(row, &name)));
             }
             self.skip_lines();
             self.sign(Sign::Equals)?;
@@ -455,9 +478,7 @@ impl<'a> Parser<'a> {
                 words::too_many_edges(limits::SOURCE_EDGES_MAX),
             ));
         }
-        if self.draft.diagrams.is_empty() {
-            return Err(error_at(at, words::no_diagram()));
-        }
+        self.need_diagram(at);
         self.edges += 1;
         let from = self.end()?;
         self.sign(Sign::Arrow)?;
@@ -505,6 +526,24 @@ impl<'a> Parser<'a> {
             path.push(self.point()?);
         }
         Ok(())
+    }
+}
+
+/// What is said of a property that a block does not have: the editor shows some by another name.
+fn no_property(row: &Row, name: &str) -> Words {
+    // Units and colons stand behind some names.
+    let plain = |shown: &str| {
+        let end = shown.find([':', '=', '(']).unwrap_or(shown.len());
+        shown[..end].trim().to_lowercase()
+    };
+    let meant = plain(name);
+    let shown = row.properties.iter().find(|one| plain(one.shown) == meant);
+    match shown {
+        Some(one) if one.name != name => words::shown_property(one.shown, one.name),
+        Some(_) | None => {
+            let known: Vec<_> = row.properties.iter().map(|one| one.name).collect();
+            words::unknown_property(row.shown, name, &known)
+        }
     }
 }
 

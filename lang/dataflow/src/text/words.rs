@@ -2,7 +2,7 @@
 //!
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
-use super::lexer::{Token, Wrong};
+use super::lexer::{Sign, Token, Wrong};
 use crate::limits::REPEATED_MAX;
 use lang_text::near::did_you_mean;
 use lang_text::problem::Words;
@@ -102,6 +102,13 @@ pub(super) fn expected(wanted: Wanted, token: &Token<'_>) -> Words {
 
 pub(super) fn wrong(wrong: Wrong) -> Words {
     match wrong {
+        // Comments of other languages begin with these.
+        Wrong::Stray('/' | '-') => Words::new(
+            "this sign means nothing here: a comment begins with #, an edge is ->, and a value with signs stands in quotes \
+             or backticks",
+            "этот знак здесь ничего не значит: комментарий начинается с #, связь — это ->, а значение со знаками пишут в \
+             кавычках",
+        ),
         Wrong::Stray(sign) => {
             let sign = sign.escape_debug();
             Words::new(
@@ -149,7 +156,20 @@ pub(super) fn no_line<'a>(token: &Token<'_>, known: impl IntoIterator<Item = &'a
     }
 }
 
+pub(super) fn long_label() -> Words {
+    Words::new(
+        "a label is one word of letters, digits and _, such as left_motor",
+        "метка — одно слово из букв, цифр и _, например left_motor",
+    )
+}
+
 pub(super) fn surplus(token: &Token<'_>, known: &[&'static str]) -> Words {
+    if *token == Token::Sign(Sign::Arrow) {
+        return Words::new(
+            "an edge has two ends: what goes on from here is a line of its own",
+            "у связи два конца: продолжение пишут отдельной строкой",
+        );
+    }
     let found = found(token);
     let all = known.join(", ");
     let words = Words::new(
@@ -239,13 +259,24 @@ pub(super) fn run_twice() -> Words {
     )
 }
 
-pub(super) fn unknown_block<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Words {
+pub(super) fn unknown_block<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Words {
     let shown = short(name);
     let words = Words::new(
         format!("there is no block '{shown}'"),
         format!("блока '{shown}' нет"),
     );
-    with_near(words, name, known)
+    let known: Vec<_> = known.collect();
+    // One of the words of a longer name.
+    let has_word = |one: &&&str| {
+        one.contains(' ') && one.split(' ').any(|word| word.eq_ignore_ascii_case(name))
+    };
+    match known.iter().find(has_word) {
+        Some(one) => Words::new(
+            words.english + &format!("; did you mean \"{one}\"?"),
+            words.russian + &format!("; может быть, \"{one}\"?"),
+        ),
+        None => with_near(words, name, known.iter().copied()),
+    }
 }
 
 pub(super) fn needs_quotes(name: &str) -> Words {
@@ -255,17 +286,17 @@ pub(super) fn needs_quotes(name: &str) -> Words {
     )
 }
 
-pub(super) fn unknown_property<'a>(
-    block: &str,
-    name: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Words {
+pub(super) fn unknown_property(block: &str, name: &str, known: &[&'static str]) -> Words {
     let shown = short(name);
+    let (english, russian) = match known {
+        [] => ("no properties".to_owned(), "свойств нет".to_owned()),
+        _ => (known.join(", "), format!("есть {}", known.join(", "))),
+    };
     let words = Words::new(
-        format!("'{block}' has no property '{shown}', unless its name is in quotes"),
-        format!("у блока '{block}' нет свойства '{shown}'; чужое имя пишут в кавычках"),
+        format!("'{block}' has no property '{shown}', it has {english}"),
+        format!("у блока '{block}' нет свойства '{shown}', {russian}"),
     );
-    with_near(words, name, known)
+    with_near(words, name, known.iter().copied())
 }
 
 pub(super) fn shown_property(shown: &str, name: &str) -> Words {

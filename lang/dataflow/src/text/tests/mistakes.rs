@@ -5,7 +5,7 @@ use lang_text::problem::Locale;
 use std::fmt::Write as _;
 
 /// Texts with mistakes.
-const MISTAKES: [&str; 43] = [
+const MISTAKES: [&str; 49] = [
     "diagram a\n  A: Sensr",
     "diagram a\n  A: Text programming",
     "diagram a\n  A: Draw hexagon",
@@ -49,6 +49,12 @@ const MISTAKES: [&str; 43] = [
     "diagram \"a\\q\"",
     "diagram a\n  A: If(condition = `data > 1)",
     "= 1",
+    "diagram a\n  my motor: Motors",
+    "diagram a\n  A: Led(color = red)",
+    "diagram a\n  A: Motors(M3 = 50)",
+    "diagram a\n  A: Wait",
+    "A: If\nB: If\nA.TRUE -> B.DATA\nB.TRUE -> A.DATA -> B.CF_IN",
+    "diagram a\n  // a comment",
 ];
 
 #[test]
