@@ -344,6 +344,15 @@ pub enum Read {
     Told(Port),
 }
 
+impl Read {
+    /// The port of what is read.
+    pub fn port(self) -> Port {
+        match self {
+            Self::Device(port) | Self::Part(port, _) | Self::Told(port) => port,
+        }
+    }
+}
+
 /// A sensor of the camera.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Camera {

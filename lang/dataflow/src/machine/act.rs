@@ -43,7 +43,10 @@ impl Machine {
             Act::ReadPort(read) => {
                 return match self.read_port(*read, env) {
                     Some(value) => self.send(to.node, 1, &value, env),
-                    None => Err(self.fault(to.node, words::no_reading(), env)),
+                    None => {
+                        let words = words::no_reading(read.port().name());
+                        Err(self.fault(to.node, words, env))
+                    }
                 };
             }
             Act::Drive { devices, .. } => match token {
@@ -166,7 +169,7 @@ impl Machine {
             };
             if let Some(offset) = offset {
                 if self.readings.of(*port, env.brick).is_none() {
-                    return Err(self.fault(to.node, words::no_reading(), env));
+                    return Err(self.fault(to.node, words::no_reading(port.name()), env));
                 }
                 offsets[at] = Some(offset);
                 self.write(*port, 0);

@@ -3,6 +3,7 @@
 //! Owns what such an expression may not do: it reads no sensor and no random number, so that looking changes nothing.
 
 use super::Machine;
+use super::formulas::Refused;
 use super::words;
 use lang_expr::reserved::SensorIndex;
 use lang_expr::{Outside, Value, Wanted};
@@ -52,13 +53,16 @@ impl Machine {
     /// What is wrong with it.
     pub fn evaluate_aside(&mut self, text: &str) -> Result<Value, Vec<Problem>> {
         let mut nobody = Nobody::at(self.now);
-        let value = self
-            .formulas
-            .evaluate_text(text, Wanted::Any, &mut nobody)?;
+        let value = self.formulas.evaluate_text(text, Wanted::Any, &mut nobody);
         match value {
-            Some(value) if !nobody.is_asked => Ok(value),
-            Some(_) => Err(vec![Problem::error(words::asks_the_robot())]),
-            None => Err(vec![Problem::error(words::only_known_variables())]),
+            Ok(value) if !nobody.is_asked => Ok(value),
+            Ok(_) => Err(vec![Problem::error(words::asks_the_robot())]),
+            Err(Refused::Problems(problems)) => Err(problems),
+            Err(Refused::Assigns) => Err(vec![Problem::error(words::assigns_aside())]),
+            Err(Refused::Unknown(name)) => {
+                let names: Vec<&str> = self.variables().map(|(name, _)| name).collect();
+                Err(vec![Problem::error(words::no_variable(&name, &names))])
+            }
         }
     }
 

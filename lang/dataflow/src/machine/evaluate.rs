@@ -2,7 +2,7 @@
 //!
 //! Owns where an error is: at a port, or in the text of a property. Knows no order of tokens.
 
-use super::formulas::Reason;
+use super::formulas::{Reason, Refused};
 use super::sensors::Robot;
 use super::{Env, Halt, Machine, values, words};
 use crate::program::{Formula, Target};
@@ -107,9 +107,13 @@ impl Machine {
             return Err(self.fault_at_port(to, words, env));
         }
         match value {
-            Ok(Some(value)) => self.at_port(to, values::text(&value), env),
-            Ok(None) => Err(self.fault_at_port(to, words::assigning_text(), env)),
-            Err(problems) => {
+            Ok(value) => self.at_port(to, values::text(&value), env),
+            Err(Refused::Assigns) => Err(self.fault_at_port(to, words::assigning_text(), env)),
+            Err(Refused::Unknown(name)) => {
+                let words = words::unknown_in_text(&name);
+                Err(self.fault_at_port(to, words, env))
+            }
+            Err(Refused::Problems(problems)) => {
                 let first = problems.into_iter().next();
                 let words = first.map_or_else(words::unit, |problem| problem.words);
                 Err(self.fault_at_port(to, words, env))

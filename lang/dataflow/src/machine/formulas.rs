@@ -45,6 +45,17 @@ pub(super) enum Reason {
     Problems(Vec<Problem>),
 }
 
+/// Why a text that came from outside is not run.
+#[derive(Debug)]
+pub(super) enum Refused {
+    /// It would change variables.
+    Assigns,
+    /// The program has no variable of this name.
+    Unknown(String),
+    /// The language of expressions says so.
+    Problems(Vec<Problem>),
+}
+
 impl Formulas {
     pub fn new(program: &Program) -> Self {
         let names = sensors::names_of(program.kit).strict();
@@ -212,22 +223,25 @@ impl Formulas {
         lang_expr::analyse(source, &mut self.names).map_err(Reason::Problems)
     }
 
-    /// The value of a text that came as a token, or from a person; nothing if it would change variables. No type of the
-    /// program is narrowed by it.
+    /// The value of a text that came as a token, or from a person. No type of the program is narrowed by it.
     pub fn evaluate_text(
         &mut self,
         text: &str,
         wanted: Wanted,
         outside: &mut dyn Outside,
-    ) -> Result<Option<Value>, Vec<Problem>> {
+    ) -> Result<Value, Refused> {
         let mut source = Source::new(text, wanted);
-        let is_new = |name: &str| self.names.find(name).is_none();
-        if assigns(&source) || source.names().any(is_new) {
-            return Ok(None);
+        if assigns(&source) {
+            return Err(Refused::Assigns);
+        }
+        let is_new = |name: &&str| self.names.find(name).is_none();
+        if let Some(name) = source.names().find(is_new) {
+            return Err(Refused::Unknown(name.to_owned()));
         }
         let mut names = self.names.clone();
-        lang_expr::analyse(&mut source, &mut names)?;
-        lang_expr::evaluate(&source, &names, &mut self.store, outside).map(Some)
+        lang_expr::analyse(&mut source, &mut names)
+            .and_then(|()| lang_expr::evaluate(&source, &names, &mut self.store, outside))
+            .map_err(Refused::Problems)
     }
 
     /// All texts of the program.

@@ -6,6 +6,7 @@
 //! before anything changes, and no device is told anything.
 
 use super::formulas::Formulas;
+use super::sensors::device;
 use super::state::{Memory, State};
 use super::trace::Deaf;
 use super::{Env, Machine, words};
@@ -328,7 +329,7 @@ impl Machine {
                 return None;
             }
             let place = program.place(id);
-            let problem = Problem::error(words::no_reading());
+            let problem = Problem::error(words::no_reading(device(source)));
             Some(Problem { place, ..problem })
         })
     }

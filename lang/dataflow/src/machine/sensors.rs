@@ -117,6 +117,19 @@ impl Outside for Robot<'_> {
     }
 }
 
+/// What a block reads, by the name that people know.
+pub(super) fn device(source: &Source) -> &'static str {
+    match source {
+        Source::Sensor(sensor) => crate::sensors::name(*sensor),
+        Source::Detect(Camera::Line) => "lineSensor",
+        Source::Detect(Camera::Object) => "objectSensor",
+        Source::Detect(Camera::Color) => "colorSensor",
+        Source::Encoders(_) => "encoders",
+        Source::Gamepad => "gamepad",
+        Source::Receive => "messages",
+    }
+}
+
 impl Machine {
     /// A block gives readings from now on. A sensor that is not there ends the program at once.
     pub(super) fn subscribe(
@@ -127,7 +140,7 @@ impl Machine {
     ) -> Result<(), Halt> {
         if let Err(at) = self.subscribed.binary_search(&id) {
             if !self.is_readable(source, env) {
-                return Err(self.fault(id, words::no_reading(), env));
+                return Err(self.fault(id, words::no_reading(device(source)), env));
             }
             self.subscribed.insert(at, id);
         }

@@ -187,10 +187,28 @@ pub(crate) fn assigning_text() -> Words {
     )
 }
 
-pub(crate) fn no_reading() -> Words {
+pub(crate) fn unknown_in_text(name: &str) -> Words {
+    let name = short(name);
     Words::new(
-        "the robot has no such device, or it says nothing",
-        "у робота нет такого устройства, или оно молчит",
+        format!(
+            "a text that comes as a token is computed, and '{name}' in it is no variable; a text that is none of code is \
+             sent without 'Evaluate'"
+        ),
+        format!(
+            "текст, пришедший как значение, вычисляется, а '{name}' в нём не переменная; просто текст посылают без \
+             'Evaluate'"
+        ),
+    )
+}
+
+pub(crate) fn no_reading(device: &str) -> Words {
+    Words::new(
+        format!(
+            "the robot has no such device, or it says nothing: {device}; a simulated robot gets its sensors from its world"
+        ),
+        format!(
+            "у робота нет такого устройства, или оно молчит: {device}; датчики виртуального робота задаёт его мир"
+        ),
     )
 }
 
@@ -245,10 +263,10 @@ pub(crate) fn asks_the_robot() -> Words {
     )
 }
 
-pub(crate) fn only_known_variables() -> Words {
+pub(crate) fn assigns_aside() -> Words {
     Words::new(
-        "it may read the variables of the program that have values, and assigns none",
-        "здесь можно читать переменные программы, у которых есть значения, и нельзя присваивать",
+        "an expression from outside reads variables and assigns none",
+        "выражение снаружи читает переменные и не присваивает",
     )
 }
 
