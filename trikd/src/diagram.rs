@@ -204,17 +204,33 @@ fn run(
         robot.go_on();
         // Steps that are missed are not made up: waits look at the time, not at steps.
         due = (due + step).max(Instant::now());
+        let hear = |message| hear(message, since(start), (diagram, robot, watch), host);
+        if !hear_until(due, host, hear)? {
+            return Ok(());
+        }
+    }
+}
+
+/// Hears the daemon until a step is due; whether the daemon is there. However much it asks for, steps go on.
+fn hear_until(
+    due: Instant,
+    host: &Host,
+    mut hear: impl FnMut(Incoming) -> io::Result<()>,
+) -> io::Result<bool> {
+    let end = due.max(Instant::now() + Duration::from_millis(limits::HEARING_MS));
+    loop {
         // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.
-        loop {
-            while let Some(message) = host.waiting()? {
-                if matches!(message, Incoming::Gone) {
-                    return Ok(());
-                }
-                hear(message, since(start), (diagram, robot, watch), host)?;
+        while let Some(message) = host.waiting()? {
+            if matches!(message, Incoming::Gone) {
+                return Ok(false);
             }
-            if !wait(host, due)? {
-                break;
+            hear(message)?;
+            if Instant::now() >= end {
+                return Ok(true);
             }
+        }
+        if !wait(host, due)? {
+            return Ok(true);
         }
     }
 }

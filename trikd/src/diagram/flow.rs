@@ -7,7 +7,7 @@ use super::live::Answer;
 use super::motors::Motors;
 use super::robot::Robot;
 use super::watch::Watch;
-use super::{errors_among, opened, read_save, since, wait};
+use super::{errors_among, hear_until, opened, read_save, since};
 use crate::engine::{Failure, NoDiagram, Outcome};
 use crate::host::{Host, Incoming};
 use crate::limits;
@@ -130,16 +130,9 @@ impl Flow {
             robot.go_on();
             // Steps that are missed are not made up: timers look at the time, not at steps.
             due = (due + step).max(Instant::now());
-            loop {
-                while let Some(message) = host.waiting()? {
-                    if matches!(message, Incoming::Gone) {
-                        return Ok(());
-                    }
-                    self.hear(message, since(start), (robot, watch), host)?;
-                }
-                if !wait(host, due)? {
-                    break;
-                }
+            let hear = |message| self.hear(message, since(start), (robot, watch), host);
+            if !hear_until(due, host, hear)? {
+                return Ok(());
             }
         }
     }
