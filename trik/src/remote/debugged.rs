@@ -209,9 +209,14 @@ impl Debugged {
 impl Target for Debugged {
     fn order(&mut self, order: &Order) -> Result<Value, Error> {
         let answer = self.ask(&order.to_string())?;
-        if answer.get("program").is_some() {
+        if let Some(program) = answer.get("program") {
             // What came before it, such as the stop at which the order was given, is older.
             self.forget_states();
+            // A program that is stopped already tells no other stop.
+            let is_stopped = program.get("state").and_then(Value::as_str) == Some("stopped");
+            if *order == Order::Pause && is_stopped {
+                self.put(Event::Report(program.clone()));
+            }
         }
         Ok(answer)
     }

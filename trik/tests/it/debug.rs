@@ -274,6 +274,11 @@ fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
     eventually("a robot that drives again", || {
         robot.robot.duty(3).is_ok_and(|duty| duty != 0)
     });
+    // One that somebody has stopped already is joined where it is.
+    told(&["break", "5", "--file", &file, "--robot", robot.ip()], "").good();
+    let said = told(&words, "print n > 0\nn\nq\n").good();
+    assert!(said.contains("(trik) print n > 0\ntrue\n"), "{said}");
+    assert!(said.contains("thread main: step"), "{said}");
     // Another one is put in its place: the end of that is not its own.
     let said = told(&words[..4], "n\nquit\n").good();
     assert!(!said.contains("has ended"), "{said}");
