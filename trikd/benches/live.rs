@@ -1,7 +1,12 @@
 //! What a change of a running diagram, a debugger and watchers cost on a robot: a daemon with a tree of plain files, and
-//! clients of its control port.
+//! clients of its control port. And how late a motor hears of a sensor in a program of data flow.
 //!
-//! Prints each figure beside its goal. A machine that does other things says more about those.
+//! `cargo bench -p trikd --bench live [-- changes|flow]`; both if none is named. Prints each figure beside its goal. A
+//! machine that does other things says more about those.
+
+mod live {
+    pub mod flow;
+}
 
 use frame::encode;
 use lang_diagram::sketch::Sketch;
@@ -186,10 +191,18 @@ fn save(power: &str) -> Vec<u8> {
     sketch.qrs().expect("a save")
 }
 
+/// Of sorted numbers the one that this share of them does not exceed.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    sorted[((sorted.len() - 1) as f64 * share) as usize]
+}
+
 fn figure(name: &str, mut took: Vec<f64>, goal: Option<f64>) {
     took.sort_by(f64::total_cmp);
-    let at = |share: f64| took[((took.len() - 1) as f64 * share) as usize];
-    let (p50, p95, p99) = (at(0.5), at(0.95), at(0.99));
+    let (p50, p95, p99) = (
+        quantile(&took, 0.5),
+        quantile(&took, 0.95),
+        quantile(&took, 0.99),
+    );
     let goal = goal.map_or_else(String::new, |goal| {
         let word = if p99 <= goal { "met" } else { "NOT MET" };
         format!("; goal p99 {goal} ms {word}")
@@ -396,17 +409,33 @@ fn watchers(daemon: &Daemon) {
     );
 }
 
-fn main() {
-    let folder = tempdir().expect("a folder");
-    tree(folder.path());
-    let daemon = daemon(folder.path());
+/// All figures of a diagram that runs.
+fn changes(folder: &Path, daemon: &Daemon) {
     let mut client = Client::new(daemon.port);
     client.upload(&save("1"));
     client.send(b"run:d.qrs");
     client.until(|text| text.contains("has started"));
-    patches(folder.path(), &mut client);
+    patches(folder, &mut client);
     steps(&mut client);
-    many(folder.path(), &mut client);
-    watchers(&daemon);
+    many(folder, &mut client);
+    watchers(daemon);
     client.send(b"stop");
+}
+
+fn main() {
+    let named: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with('-'))
+        .collect();
+    let wanted = |name: &str| named.is_empty() || named.iter().any(|word| word == name);
+    let sections: [(&str, fn(&Path, &Daemon)); 2] =
+        [("changes", changes), ("flow", live::flow::run)];
+    for (name, run) in sections {
+        if wanted(name) {
+            let folder = tempdir().expect("a folder");
+            tree(folder.path());
+            let daemon = daemon(folder.path());
+            run(folder.path(), &daemon);
+        }
+    }
 }
