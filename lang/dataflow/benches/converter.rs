@@ -2,11 +2,14 @@
 //!
 //! `cargo bench -p lang-dataflow --bench converter`; needs gcc. The best of many short runs counts, and both count instants:
 //! a poll of twenty sensors through all blocks.
+//! `... --bench converter -- --count INSTANTS` only runs so many instants in the machine, for a tool that counts
+//! instructions: the difference of two counts is free of everything else, and does not depend on what else the computer
+//! does. That needs no gcc.
 
 use lang_dataflow::check::check;
 use lang_dataflow::generate::{Target, generate};
-use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::trace::Deaf;
+use lang_dataflow::machine::{Machine, POLL_MS};
 use lang_dataflow::program::Program;
 use lang_dataflow::text;
 use lang_diagram::brick::{Brick, Command};
@@ -78,23 +81,25 @@ fn program() -> String {
     text
 }
 
+/// Seconds of so many instants in the machine, after a few that tell the types of the texts.
+fn instants(program: &Rc<Program>, polls: u32) -> f64 {
+    let mut machine = Machine::new(program.clone());
+    let mut robot = Robot(0);
+    for poll in 0..WARM {
+        machine.step(POLL_MS * poll, &mut robot, &mut Deaf);
+    }
+    let begin = Instant::now();
+    for poll in WARM..WARM + polls {
+        let status = machine.step(POLL_MS * poll, &mut robot, &mut Deaf);
+        assert_eq!(status, Status::Running);
+    }
+    begin.elapsed().as_secs_f64()
+}
+
 /// Nanoseconds of an instant in the machine.
 fn machine(program: &Rc<Program>) -> f64 {
-    let run = || {
-        let mut machine = Machine::new(program.clone());
-        let mut robot = Robot(0);
-        // The first tokens tell the types of the texts.
-        for poll in 0..WARM {
-            machine.step(20 * poll, &mut robot, &mut Deaf);
-        }
-        let begin = Instant::now();
-        for poll in WARM..WARM + POLLS {
-            let status = machine.step(20 * poll, &mut robot, &mut Deaf);
-            assert_eq!(status, Status::Running);
-        }
-        begin.elapsed().as_secs_f64()
-    };
-    let best = (0..RUNS).map(|_| run()).fold(f64::INFINITY, f64::min);
+    let runs = (0..RUNS).map(|_| instants(program, POLLS));
+    let best = runs.fold(f64::INFINITY, f64::min);
     best * 1e9 / f64::from(POLLS)
 }
 
@@ -135,6 +140,12 @@ fn main() {
     let checked = check(&project);
     assert!(!checked.has_errors(), "{:?}", checked.problems);
     let program = Rc::new(checked.program);
+    let words: Vec<String> = std::env::args().collect();
+    if let Some(flag) = words.iter().position(|word| word == "--count") {
+        let count = words.get(flag + 1).and_then(|word| word.parse().ok());
+        instants(&program, count.expect("--count INSTANTS"));
+        return;
+    }
     let blocks = program.nodes.len();
     let scratch = tempfile::tempdir().expect("a folder");
     let converter = converter(&program, scratch.path());
