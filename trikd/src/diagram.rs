@@ -191,7 +191,6 @@ fn run(
     host: &Host,
 ) -> io::Result<()> {
     let start = Instant::now();
-    let step = Duration::from_millis(STEP_MS.into());
     let mut due = start;
     loop {
         let now = since(start);
@@ -203,7 +202,7 @@ fn run(
         }
         robot.go_on();
         // Steps that are missed are not made up: waits look at the time, not at steps.
-        due = (due + step).max(Instant::now());
+        due = next_step(due, Instant::now());
         let hear = |message| hear(message, since(start), (diagram, robot, watch), host);
         if !hear_until(due, host, hear)? {
             return Ok(());
@@ -235,9 +234,24 @@ fn hear_until(
     }
 }
 
+/// When the step after the one of `due` is due. Of steps that are missed only the last one is done, at once. All others are
+/// a whole number of steps from the first, so that one late step makes no later wait or reading late.
+fn next_step(due: Instant, now: Instant) -> Instant {
+    let step = Duration::from_millis(STEP_MS.into());
+    let next = due + step;
+    let missed = between(next, now) / STEP_MS;
+    next + step * missed
+}
+
+/// Milliseconds from a moment to a later one; none to an earlier one.
+fn between(start: Instant, until: Instant) -> u32 {
+    let passed = until.saturating_duration_since(start).as_millis();
+    u32::try_from(passed).unwrap_or(u32::MAX)
+}
+
 /// Milliseconds since a moment.
 fn since(start: Instant) -> u32 {
-    u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX)
+    between(start, Instant::now())
 }
 
 /// Does what the daemon asks for between two steps.
@@ -291,5 +305,31 @@ fn wait(host: &Host, until: Instant) -> io::Result<bool> {
         Ok(ready) => Ok(ready > 0),
         Err(nix::errno::Errno::EINTR) => Ok(false),
         Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_step_makes_no_later_one_late() {
+        let start = Instant::now();
+        let at = |us: u64| start + Duration::from_micros(us);
+        for (due, done, expected) in [
+            // In time, and a moment late, as every step is.
+            (20_000, 20_000, 30_000),
+            (20_000, 20_090, 30_000),
+            (20_000, 29_999, 30_000),
+            // One is missed: it is done at once, and the one after it is where it would have been.
+            (20_000, 30_000, 30_000),
+            (20_000, 33_500, 30_000),
+            (30_000, 33_600, 40_000),
+            // Many are: of them only the last.
+            (20_000, 118_200, 110_000),
+            (110_000, 118_300, 120_000),
+        ] {
+            assert_eq!(next_step(at(due), at(done)), at(expected), "{due} {done}");
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::live::Answer;
 use super::motors::Motors;
 use super::robot::Robot;
 use super::watch::Watch;
-use super::{errors_among, hear_until, opened, read_save, since};
+use super::{errors_among, hear_until, next_step, opened, read_save, since};
 use crate::engine::{Failure, NoDiagram, Outcome};
 use crate::host::{Host, Incoming};
 use crate::limits;
@@ -21,12 +21,12 @@ use lang_dataflow::machine::trace::{Deaf, Trace};
 use lang_dataflow::program::{NodeId, Program};
 use lang_dataflow::project::Project;
 use lang_dataflow::read::{Language, language};
-use lang_diagram::machine::{STEP_MS, Status};
+use lang_diagram::machine::Status;
 use lang_text::problem::{Locale, Problem, Severity};
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The ending of a program in its textual form.
 pub(super) const ENDING: &str = "flow";
@@ -104,7 +104,6 @@ pub(super) fn run(
 impl Flow {
     fn steps(&mut self, robot: &mut Robot<'_>, watch: &mut Watch, host: &Host) -> io::Result<()> {
         let start = Instant::now();
-        let step = Duration::from_millis(STEP_MS.into());
         let mut due = start;
         loop {
             let now = since(start);
@@ -129,7 +128,7 @@ impl Flow {
             }
             robot.go_on();
             // Steps that are missed are not made up: timers look at the time, not at steps.
-            due = (due + step).max(Instant::now());
+            due = next_step(due, Instant::now());
             let hear = |message| self.hear(message, since(start), (robot, watch), host);
             if !hear_until(due, host, hear)? {
                 return Ok(());
