@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 24] = [
+const TARGETS: [(&str, Target); 25] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
@@ -16,6 +16,7 @@ const TARGETS: [(&str, Target); 24] = [
     ("dataflow", flow),
     ("flow", lang_dataflow::fuzz::source),
     ("flowsave", lang_dataflow::fuzz::reader),
+    ("flowdebug", lang_dataflow::fuzz::debugging),
     ("constraints", lang_constraint::fuzz::constraints),
     ("dcml", lang_dcml::fuzz::dcml),
     ("recording", journal::fuzz::recording),

@@ -212,6 +212,11 @@ impl Desk {
         self.motors_rest && self.is_stopped()
     }
 
+    /// When the past begins that is kept, in milliseconds of the program, and how many bytes it takes.
+    pub fn kept(&self) -> Option<(u32, usize)> {
+        self.hindsight.kept()
+    }
+
     /// Attaches a debugger; the past is kept from now on.
     pub fn attach(&mut self) {
         if !self.is_attached {

@@ -15,6 +15,10 @@ use lang_diagram::ports::Port;
 use lang_text::problem::Locale;
 use std::rc::Rc;
 
+mod debugging;
+
+pub use debugging::debugging;
+
 /// Instants that a program runs here.
 const INSTANTS: u32 = 60;
 /// Words that properties are made of: numbers, expressions, names, and what is none of these.
@@ -217,6 +221,15 @@ struct Robot<'a> {
     told: u64,
 }
 
+impl<'a> Robot<'a> {
+    fn new(readings: &'a [u8]) -> Self {
+        Self {
+            choices: Choices(readings),
+            told: 0,
+        }
+    }
+}
+
 impl Brick for Robot<'_> {
     fn command(&mut self, command: Command<'_>) {
         self.told = self
@@ -255,6 +268,12 @@ struct Count {
     lost: u64,
 }
 
+impl Count {
+    fn all(&self) -> [u64; 3] {
+        [self.sent, self.fired, self.lost]
+    }
+}
+
 impl Trace for Count {
     fn sent(&mut self, now: u32, from: u32, port: u8, value: &lang_expr::Value) {
         let text = value.brief();
@@ -272,10 +291,7 @@ impl Trace for Count {
 }
 
 fn outcome(program: &Rc<crate::program::Program>, readings: &[u8]) -> (Status, u64, [u64; 3]) {
-    let mut robot = Robot {
-        choices: Choices(readings),
-        told: 0,
-    };
+    let mut robot = Robot::new(readings);
     let mut count = Count::default();
     let mut machine = Machine::new(program.clone());
     for step in 0..INSTANTS {
@@ -283,7 +299,7 @@ fn outcome(program: &Rc<crate::program::Program>, readings: &[u8]) -> (Status, u
     }
     let status = machine.status();
     machine.stop(&mut robot, &mut Deaf);
-    (status, robot.told, [count.sent, count.fired, count.lost])
+    (status, robot.told, count.all())
 }
 
 /// A program becomes a converter in both languages, or is refused with reasons; a list may be too long for C alone.

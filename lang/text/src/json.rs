@@ -1,6 +1,10 @@
 //! Writes JSON (RFC 8259) for programs, on robots too, where no library for it is.
 //!
-//! Owns how texts and objects are written. Knows nothing of reading it.
+//! Owns how texts and objects are written. Knows nothing of reading it but whether a text is JSON.
+
+mod grammar;
+
+pub use grammar::is_json;
 
 use std::fmt::{Display, Write};
 
@@ -101,5 +105,6 @@ mod tests {
             text,
             "{\"a\\\"b\":\"\\\\\\n\\u0001\u{43f}\",\"n\":1.5,\"l\":[{},\"0123456789\"]}"
         );
+        assert!(is_json(&text));
     }
 }

@@ -12,3 +12,5 @@ pub const PROBLEMS: usize = 200;
 pub const PROBLEMS_KEPT: usize = 2_000;
 /// Bytes of a word that is compared with known ones; a longer one is near to none.
 pub const NEAR_BYTES: usize = 200;
+/// How deep JSON that is looked at may be nested.
+pub const JSON_DEPTH_MAX: usize = 64;

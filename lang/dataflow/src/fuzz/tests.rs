@@ -25,6 +25,13 @@ proptest! {
     }
 
     #[test]
+    fn strange_orders_to_a_debugger_do_no_harm(
+        bytes in proptest::collection::vec(any::<u8>(), 0..600)
+    ) {
+        debugging(&bytes);
+    }
+
+    #[test]
     fn what_is_written_as_a_save_is_read_as_it_was(
         bytes in proptest::collection::vec(any::<u8>(), 0..300)
     ) {
@@ -64,6 +71,17 @@ proptest! {
 }
 
 #[test]
+fn what_fuzzing_of_the_debugger_begins_with_does_no_harm() {
+    let seeds = [
+        &include_bytes!("../../../../fuzz/seeds/flowdebug/flowdebug1")[..],
+        include_bytes!("../../../../fuzz/seeds/flowdebug/flowdebug2"),
+        include_bytes!("../../../../fuzz/seeds/flowdebug/flowdebug3"),
+        include_bytes!("../../../../fuzz/seeds/flowdebug/flowdebug4"),
+    ];
+    seeds.into_iter().for_each(debugging);
+}
+
+#[test]
 fn many_blocks_and_edges_take_bounded_time() {
     use crate::machine::fixtures::{diagram, project};
     // 10,000 blocks in a row, each with an edge to the next.
@@ -85,10 +103,7 @@ fn many_blocks_and_edges_take_bounded_time() {
     let checked = check(&project(vec![main]));
     assert!(!checked.has_errors(), "{:?}", checked.problems.first());
     let mut machine = Machine::new(Rc::new(checked.program));
-    let mut robot = Robot {
-        choices: Choices(&[]),
-        told: 0,
-    };
+    let mut robot = Robot::new(&[]);
     for step in 0..100 {
         machine.step(step * 10, &mut robot, &mut Deaf);
     }

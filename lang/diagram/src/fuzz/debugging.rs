@@ -15,6 +15,7 @@ use crate::machine::{Machine, Options, STEP_MS};
 use crate::program::Program;
 use crate::project::Project;
 use crate::stand_in::{Placing, StandIn};
+use lang_text::json::is_json;
 use lang_text::problem::Locale;
 
 /// How much of the past is kept: little, so that some of it is forgotten.
@@ -83,15 +84,12 @@ pub fn debugging(bytes: &[u8]) {
             _ => {
                 let order = order(&mut script, desk.live().program());
                 let answer = desk.order((tag, &order), now, &mut robot, &mut Deaf);
-                let is_whole = answer.starts_with('{') && answer.ends_with('}');
-                assert!(
-                    is_whole && answer.contains("\"done\":"),
-                    "{order}: {answer}"
-                );
+                assert!(is_json(&answer), "{order}: {answer}");
+                assert!(answer.contains("\"done\":"), "{order}: {answer}");
             }
         }
         for news in desk.news() {
-            assert!(news.starts_with('{') && news.ends_with('}'), "{news}");
+            assert!(news.starts_with('{') && is_json(&news), "{news}");
         }
         assert!(desk.live().views().count() <= limits::THREADS_MAX);
         let session = desk.session();
