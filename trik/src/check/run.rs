@@ -289,7 +289,7 @@ impl Solution {
                         vec![format!("{}: {why}", shown(path))].into()
                     }
                     Unreadable::Save(problems) => {
-                        Refused::broken(lines(path, &problems, args.language))
+                        Refused::broken(flow::unread(path, &problems, args.language))
                     }
                 })?;
                 match opened {
@@ -417,7 +417,7 @@ fn ready(
     args: &CheckArgs,
 ) -> Result<Rc<lang_dataflow::program::Program>, Refused> {
     let ready = flow.ready();
-    ready.map_err(|problems| Refused::broken(lines(file, &problems, args.language)))
+    ready.map_err(|problems| Refused::broken(flow.lines(file, &problems, args.language)))
 }
 
 /// How a program that is debugged begins.

@@ -234,7 +234,7 @@ impl Target for Stage<'_> {
         Ok(events)
     }
 
-    fn change(&mut self, _file: &Path, version: Written<'_>) -> Result<Changed, Error> {
+    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error> {
         let locale = self.settings.locale;
         let version = match version {
             Written::Diagram(project) => patch::Version::of(project, self.world)
@@ -243,7 +243,7 @@ impl Target for Stage<'_> {
             Written::Flow(flow) => flow
                 .ready()
                 .map(|program| Version::Flow(program.into()))
-                .map_err(|mistakes| lines(&mistakes, locale)),
+                .map_err(|mistakes| flow.lines(file, &mistakes, locale).join("\n")),
         };
         let version = match version {
             Ok(version) => version,

@@ -1,14 +1,16 @@
 //! A data-flow program on its way from its file to crate `lang-dataflow`: of a save, or in its textual form.
 //!
-//! Owns which files are such programs, and when one must not run. What is wrong with it is found in `lang`.
+//! Owns which files are such programs, when one must not run, and how a line begins that tells why. What is wrong with it is
+//! found in `lang`.
 
 use super::save::{Unreadable, bytes};
 use lang_dataflow::check::check;
 use lang_dataflow::project::Project;
 use lang_dataflow::read::{Language, language, project};
+use lang_dataflow::text::Places;
 use lang_dataflow::{program, text};
 use lang_diagram::read::{self, Opened};
-use lang_text::problem::{Problem, Severity};
+use lang_text::problem::{Locale, Place, Position, Problem, Severity};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -72,6 +74,35 @@ pub(crate) fn of_save(opened: Opened) -> Program {
     }
 }
 
+/// What is wrong with a file that could not be read, a line for each; of a text with the place to which editors go.
+pub(crate) fn unread(file: &Path, problems: &[Problem], locale: Locale) -> Vec<String> {
+    let line = |problem: &Problem| match problem.place.position.filter(|_| is_text(file)) {
+        None => line(file, None, problem, locale),
+        at => {
+            // The line begins with it.
+            let place = Place {
+                position: None,
+                ..problem.place.clone()
+            };
+            let problem = Problem {
+                place,
+                ..problem.clone()
+            };
+            line(file, at, &problem, locale)
+        }
+    };
+    problems.iter().map(line).collect()
+}
+
+fn line(file: &Path, at: Option<Position>, problem: &Problem, locale: Locale) -> String {
+    let told = problem.in_locale(locale);
+    let file = file.display();
+    match at {
+        Some(at) => format!("{file}:{}:{}: {told}", at.line, at.column),
+        None => format!("{file}: {told}"),
+    }
+}
+
 impl Flow {
     /// That of a save.
     pub(super) fn of_save(opened: &Opened) -> Self {
@@ -88,6 +119,17 @@ impl Flow {
         let mut problems = self.problems.clone();
         problems.extend(check(&self.project).problems);
         problems
+    }
+
+    /// What is wrong with it, a line for each; of a text with the place to which editors go.
+    pub(crate) fn lines(&self, file: &Path, problems: &[Problem], locale: Locale) -> Vec<String> {
+        let places = match &self.text {
+            Some(text) => Places::of(text, &self.project).locate(problems),
+            None => vec![None; problems.len()],
+        };
+        let both = problems.iter().zip(places);
+        both.map(|(problem, at)| line(file, at, problem, locale))
+            .collect()
     }
 
     /// Ready to run.

@@ -5,7 +5,7 @@
 
 use super::link::{Link, Message, ms};
 use super::upload::Upload;
-use crate::debug::target::{Changed, Channel, Event, Target, Written, lines, problems, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
@@ -243,7 +243,7 @@ impl Target for Debugged {
             }
             Written::Flow(flow) => {
                 let mistakes = flow.ready().err();
-                mistakes.map(|mistakes| lines(&mistakes, Locale::English))
+                mistakes.map(|wrong| flow.lines(file, &wrong, Locale::English).join("\n"))
             }
         };
         if let Some(mistakes) = mistakes {

@@ -149,6 +149,35 @@ fn an_editor_can_go_to_what_is_wrong_in_a_text() {
     ] {
         assert!(told.lines().any(|line| line.starts_with(start)), "{told}");
     }
+    // So does what keeps it from running.
+    for (command, name, start) in [
+        (
+            "check",
+            "wrong.flow",
+            "error: wrong.flow:5:9: A: Text programming 'F': 'IO0', 2:9 ",
+        ),
+        (
+            "debug",
+            "wrong.flow",
+            "trik: wrong.flow:5:9: A: Text programming 'F': 'IO0', 2:9 ",
+        ),
+        (
+            "check",
+            "torn.flow",
+            "error: torn.flow:2:3: a line begins with a label",
+        ),
+        (
+            "debug",
+            "torn.flow",
+            "trik: torn.flow:2:3: a line begins with a label",
+        ),
+    ] {
+        let output = trik(&board, &[command, name]);
+        assert!(output.code() != 0, "{command} {name}");
+        let all = format!("{}{}", output.stdout, output.stderr);
+        let is_told = all.lines().any(|line| line.starts_with(start));
+        assert!(is_told, "{command} {name}: {all}");
+    }
     let told = trik(&board, &["lint", "--json", "wrong.flow"]).stdout;
     assert!(told.contains("\"fileColumn\":1,\"fileLine\":7,"), "{told}");
     // What is shown of one diagram is what it calls.
