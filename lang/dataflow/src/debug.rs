@@ -288,9 +288,13 @@ impl Desk {
     /// Gives a variable the value of an expression.
     ///
     /// # Errors
-    /// What is wrong with either.
-    pub fn assign(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
-        self.machine.assign_aside(name, text)?;
+    /// What is wrong with either, or the program has ended.
+    pub fn assign(&mut self, name: &str, text: &str) -> Result<(), NotNow> {
+        if let Status::Ended { .. } = self.machine.status() {
+            return Err(NotNow::Ended);
+        }
+        let assigned = self.machine.assign_aside(name, text);
+        assigned.map_err(NotNow::Problems)?;
         self.hindsight.changed();
         self.tell_again();
         Ok(())
@@ -405,7 +409,7 @@ impl Desk {
             Order::Back(how) => self.back(*how)?,
             Order::Present => self.hindsight.to_present(),
             Order::Break(point) => {
-                Self::must_run(machine)?;
+                // It stops those who look for it in the past of a program that has ended.
                 let number = machine.add_point(point.clone())?;
                 return Ok(report::object().plain("number", number));
             }
@@ -428,8 +432,7 @@ impl Desk {
                 return Err(Common::NotNow(NotNow::Past).into());
             }
             Order::Set(name, text) => {
-                Self::must_run(&self.machine)?;
-                self.assign(name, text).map_err(Common::Expression)?;
+                self.assign(name, text).map_err(Common::NotNow)?;
                 let value = self.machine.value_of(name);
                 return Ok(value.map_or_else(report::object, |value| shared::value(&value)));
             }

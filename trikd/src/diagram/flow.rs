@@ -231,7 +231,7 @@ impl Flow {
                 let value = value.map_or_else(String::new, |value| value.brief());
                 Answer::changed(name, &format!("{name} = {value}"))
             }
-            Err(problems) => Answer::unchanged(name, &lines(&problems, locale)),
+            Err(why) => Answer::unchanged(name, &why.in_locale(locale)),
         }
     }
 }

@@ -298,6 +298,9 @@ impl Desk {
         if self.session.is_past() {
             return Err(Refused::NotNow(NotNow::Past));
         }
+        if let Phase::Ended { .. } = self.session.phase() {
+            return Err(Refused::Ended);
+        }
         let point = Breakpoint {
             is_once: true,
             ..Breakpoint::before(block)

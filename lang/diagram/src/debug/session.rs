@@ -39,6 +39,8 @@ pub enum Phase {
 pub enum NotNow {
     /// Somebody looks at its past, which is as it was.
     Past,
+    /// It has ended.
+    Ended,
     /// What is asked for is wrong.
     Problems(Vec<Problem>),
 }
@@ -48,6 +50,7 @@ impl NotNow {
     pub fn in_locale(&self, locale: Locale) -> String {
         match self {
             Self::Past => words::past().in_locale(locale).to_owned(),
+            Self::Ended => words::ended().in_locale(locale).to_owned(),
             Self::Problems(problems) => report::problems(problems, locale),
         }
     }
@@ -316,8 +319,8 @@ impl Session {
     /// Assigns a variable the value of an expression.
     ///
     /// # Errors
-    /// What is wrong with the expression, or with this value for this variable, or somebody looks at the past. Nothing has
-    /// changed then.
+    /// What is wrong with the expression, or with this value for this variable, or somebody looks at the past, or the program
+    /// has ended. Nothing has changed then.
     pub fn assign(
         &mut self,
         variable: &str,
@@ -327,6 +330,9 @@ impl Session {
     ) -> Result<(), NotNow> {
         if self.is_past() {
             return Err(NotNow::Past);
+        }
+        if let Phase::Ended { .. } = self.phase() {
+            return Err(NotNow::Ended);
         }
         let thread = self.machine.held_thread().unwrap_or(0);
         let assigned = self.machine.assign(variable, text, thread, brick, trace);

@@ -91,7 +91,11 @@ pub(super) fn not_stopped() -> Words {
 }
 
 pub(super) fn ended() -> Words {
-    Words::new("the program has ended", "программа закончилась")
+    Words::new(
+        "the program has ended, and does nothing more: look at its past, where breakpoints stop too, or start it again",
+        "программа закончилась и больше ничего не делает: посмотрите её прошлое, где точки останова тоже действуют, или \
+         запустите её снова",
+    )
 }
 
 pub(super) fn no_breakpoint(number: Option<u32>) -> Words {

@@ -258,19 +258,31 @@ fn each_call_of_a_subprogram_keeps_its_own_and_a_random_that_repeats_no_more_end
 }
 
 #[test]
-fn a_program_that_has_ended_takes_neither_breakpoints_nor_values() {
+fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
     let text = "V Variable {variable=n = 3}\nM Motors {M3Power=50}\nV.CF_OUT > M.CF_IN";
     let (mut desk, mut robot) = (desk(text), Robot::default());
     told(&mut desk, "attach");
     runs(&mut desk, &mut robot, 0, 20);
     assert!(matches!(desk.machine().status(), Status::Ended { .. }));
-    for order in ["break qrm:/main/M", "watch n", "set n=4"] {
+    for order in ["set n=4", "until qrm:/main/M", "step", "continue", "pause"] {
         let answer = told(&mut desk, order);
         assert!(answer.contains("\"done\":false"), "{order}: {answer}");
         assert!(answer.contains("has ended"), "{order}: {answer}");
+        assert!(answer.contains("start it again"), "{order}: {answer}");
     }
+    assert_eq!(desk.assign("n", "4"), Err(NotNow::Ended));
     let n = told(&mut desk, "evaluate n");
     assert!(n.contains("\"value\":\"3\""), "{n}");
+    let points = told(&mut desk, "breakpoints");
+    assert!(points.contains("\"breakpoints\":[]"), "{points}");
+    assert!(told(&mut desk, "break qrm:/main/M").contains("\"number\":1"));
+    let back = told(&mut desk, "back continue");
+    assert!(back.contains("\"state\":\"past\""), "{back}");
+    assert!(
+        back.contains("\"reason\":\"breakpoint\",\"number\":1"),
+        "{back}"
+    );
+    assert!(told(&mut desk, "set n=4").contains("this is the past"));
 }
 
 #[test]

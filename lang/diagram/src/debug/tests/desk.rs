@@ -283,3 +283,30 @@ fn a_long_search_is_told_at_its_end_and_a_pause_ends_it() {
     assert!(news.contains("\"reason\":\"oldest\""), "{news}");
     assert_eq!(stage.desk.live().now(), ms, "the program stands still");
 }
+
+#[test]
+fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
+    let (mut stage, ids) = stage_of("n = n + 1; m = 6 / (3 - n)");
+    stage.order("attach");
+    let news = stage.run(100).join("\n");
+    assert!(news.contains("\"state\":\"ended\""), "{news}");
+    let until = format!("until {}", ids[2]);
+    for order in ["set n=4", &until, "step", "continue"] {
+        let answer = stage.order(order);
+        assert!(answer.contains("\"done\":false"), "{order}: {answer}");
+        assert!(answer.contains("has ended"), "{order}: {answer}");
+        assert!(answer.contains("start it again"), "{order}: {answer}");
+    }
+    assert!(stage.order("evaluate n").contains("\"value\":\"3\""));
+    let points = stage.order("breakpoints");
+    assert!(points.contains("\"breakpoints\":[]"), "{points}");
+    let added = stage.order(&format!("break {}\nif n == 1", ids[2]));
+    assert!(added.contains("\"number\":1"), "{added}");
+    let back = stage.order("back continue");
+    assert!(
+        back.contains("\"reason\":\"breakpoint\",\"number\":1"),
+        "{back}"
+    );
+    assert!(stage.order("evaluate n").contains("\"value\":\"1\""));
+    assert!(stage.order("set n=4").contains("this is the past"));
+}
