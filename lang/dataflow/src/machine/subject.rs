@@ -125,6 +125,10 @@ impl Subject for Here<'_> {
         match node.op {
             Op::Source(_) if node.linked == 0 => Some(words::starts_by_itself()),
             Op::Flow(Flow::InPort) => Some(words::only_passes()),
+            // Its numbers come when their time is over, not as a reaction: only what starts it anew is one.
+            Op::Flow(Flow::Random {
+                every_ms: Some(_), ..
+            }) if node.linked == 0 => Some(words::repeats_by_itself()),
             Op::Flow(_) | Op::Source(_) | Op::Act(_) => None,
         }
     }

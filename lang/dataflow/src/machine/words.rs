@@ -340,6 +340,13 @@ pub(crate) fn starts_by_itself() -> Words {
     )
 }
 
+pub(crate) fn repeats_by_itself() -> Words {
+    Words::new(
+        "this block gives numbers by itself, one each time that its time is over: stop at the block after it",
+        "этот блок сам даёт числа, по одному, когда проходит его время: остановитесь на блоке после него",
+    )
+}
+
 pub(crate) fn only_passes() -> Words {
     Words::new(
         "tokens pass this port without a reaction: stop at the block after it",

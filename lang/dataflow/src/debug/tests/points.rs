@@ -292,3 +292,31 @@ fn a_thousand_breakpoints_and_a_long_text_at_each_instant_stay_within_bounds() {
         written.len()
     );
 }
+
+#[test]
+fn numbers_that_come_by_themselves_are_met_at_the_block_after_them() {
+    let text = "R Random generator {fromNumber=1 | toNumber=3 | repeatedly=true | time=20}\nM Motors\nR.OUT > M.M3";
+    let (mut desk, mut robot) = asked(text, &[]);
+    for order in ["break qrm:/main/R", "until qrm:/main/R"] {
+        let refused = told(&mut desk, order);
+        assert!(refused.contains("\"done\":false"), "{refused}");
+        assert!(refused.contains("stop at the block after it"), "{refused}");
+    }
+    told(&mut desk, "break qrm:/main/M");
+    for ms in [20, 40, 60] {
+        until_stopped(&mut desk, &mut robot, 100 * ms);
+        assert_eq!(desk.machine().now(), ms);
+        told(&mut desk, "continue");
+    }
+    // What starts one anew is a token like any other.
+    let started = format!("{text}\nL Loop {{time=50}}\nL.OUT > R.CF_IN");
+    let (mut desk, mut robot) = asked(&started, &["break qrm:/main/R"]);
+    for (ms, from) in [(50, 0), (100, 10_000)] {
+        until_stopped(&mut desk, &mut robot, from);
+        assert_eq!(desk.machine().now(), ms);
+        told(&mut desk, "continue");
+    }
+    // One that gives a number for each token reacts to each.
+    let once = "R Random generator\nM Motors\nR.OUT > M.M3";
+    asked(once, &["break qrm:/main/R"]);
+}
