@@ -19,7 +19,7 @@ mod tests;
 
 pub(crate) use devices::LED_COLORS;
 pub(crate) use drawing::{BACKGROUNDS, COLORS};
-pub use former::Former;
+pub use former::{Former, SHAPE};
 use lang_text::problem::Locale;
 
 /// One type of block.
@@ -294,12 +294,24 @@ pub fn find(element: &str) -> Option<&'static Row> {
     table().find(|row| row.element == element)
 }
 
-/// The row of an element name of an older version, with how its ports were numbered.
-pub fn find_former(element: &str) -> Option<(&'static Row, &'static Former)> {
+/// The row of an element name of an older version, with how its ports were numbered; `shape` is its property [`SHAPE`].
+pub fn find_former(element: &str, shape: Option<&str>) -> Option<(&'static Row, &'static Former)> {
+    let is_shape = |wanted: &str| shape.is_some_and(|has| has.trim().eq_ignore_ascii_case(wanted));
     former::FORMER
         .iter()
-        .find(|former| former.element == element)
+        .find(|former| former.element == element && former.shape.is_none_or(is_shape))
         .and_then(|former| Some((find(former.now)?, former)))
+}
+
+/// Whether this is a block of an older version that drew any shape.
+pub fn is_painter(element: &str) -> bool {
+    former::PAINTERS.contains(&element)
+}
+
+/// Shapes that such a block drew, with the shown names of the blocks that draw them now.
+pub fn painted() -> impl Iterator<Item = (&'static str, &'static Row)> {
+    let rows = former::FORMER.iter();
+    rows.filter_map(|former| Some((former.shape?, find(former.now)?)))
 }
 
 const fn port(name: &'static str, way: Direction, of: Kind, x: i16, y: i16) -> Port {

@@ -75,7 +75,7 @@ struct Reader<'a> {
     /// Graphical objects that are in a diagram, and diagrams.
     reached: HashSet<&'a str>,
     /// Former names that were told already.
-    former: HashSet<&'static str>,
+    former: HashSet<(&'static str, &'static str)>,
 }
 
 /// How the ports of a block are numbered in this save.
@@ -188,10 +188,16 @@ impl<'a> Reader<'a> {
         if let Some(row) = blocks::find(element) {
             return (Some(row), None);
         }
-        let Some((row, former)) = blocks::find_former(element) else {
+        let logical = self.logical(object);
+        let shape = logical.and_then(|logical| logical.property(blocks::SHAPE));
+        let Some((row, former)) = blocks::find_former(element, shape) else {
+            if blocks::is_painter(element) && logical.is_some() {
+                let words = words::no_painter(element, shape);
+                self.report(object, diagram, Severity::Error, words);
+            }
             return (None, None);
         };
-        if self.former.insert(former.element) {
+        if self.former.insert((former.element, former.now)) {
             let words = words::former_name(element, row.element);
             self.report(object, diagram, Severity::Note, words);
         }
@@ -237,13 +243,13 @@ impl<'a> Reader<'a> {
         &mut self,
         object: &'a Object,
         diagram: &str,
-        places: &HashMap<&str, usize>,
+        places_of: &HashMap<&str, usize>,
         blocks: &[Block],
         numbering: &[Numbering],
     ) -> Edge {
         let end = |key, port| {
             let id = object.property(key).filter(|id| objects::is_object(id))?;
-            let block = *places.get(id)?;
+            let block = *places_of.get(id)?;
             let number = number(object.property(port).unwrap_or_default());
             let port = present(blocks[block].row, numbering[block], number);
             (port != DETACHED).then_some(End { block, port })
@@ -270,6 +276,15 @@ impl<'a> Reader<'a> {
                 .map(|corner| (corner.0 + x, corner.1 + y))
                 .collect(),
         };
+        for (key, port) in [("from", "fromPort"), ("to", "toPort")] {
+            let number = number(object.property(port).unwrap_or_default());
+            let block = object.property(key).and_then(|id| places_of.get(id));
+            let gone = block.and_then(|&at| gone(blocks[at].row, numbering[at], number));
+            if let Some((name, row)) = gone {
+                let words = words::gone_port(name, row);
+                self.report(object, diagram, Severity::Error, words);
+            }
+        }
         if let Some(word) = text(POLICY).filter(|_| policy.is_none()) {
             self.warn(object, diagram, words::unknown_policy(word));
         }
@@ -318,11 +333,22 @@ fn present(row: Option<&'static Row>, former: Numbering, number: i32) -> i32 {
     };
     let name = usize::try_from(number).ok().and_then(|at| names.get(at));
     match (name, row) {
-        (Some(name), Some(row)) => row.port(name).map_or(number, i32::from),
+        (Some(name), Some(row)) => row.port(name).map_or(DETACHED, i32::from),
         // A number beyond the former ports must stay out of the present ones.
         _ if number == DETACHED => DETACHED,
         _ => i32::MAX,
     }
+}
+
+/// A former port that the block has no more, by its name.
+fn gone(
+    row: Option<&'static Row>,
+    former: Numbering,
+    number: i32,
+) -> Option<(&'static str, &'static Row)> {
+    let (row, names) = (row?, former?.ports?);
+    let name = *names.get(usize::try_from(number).ok()?)?;
+    row.port(name).is_none().then_some((name, row))
 }
 
 /// Points of a property, `x, y : x, y : `; what is no finite number is left out.

@@ -2,10 +2,10 @@
 //!
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
-use crate::blocks::Direction;
+use crate::blocks::{Direction, Row};
 use crate::limits::{LISTED_MAX, REPEATED_MAX};
 use lang_text::near;
-use lang_text::problem::Words;
+use lang_text::problem::{Locale, Words};
 
 /// Names as a list, which is cut.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
@@ -68,6 +68,39 @@ pub(crate) fn former_name(element: &str, now: &str) -> Words {
     Words::new(
         format!("'{element}' is the name that '{now}' had before 2016-07-12; it is read as that"),
         format!("'{element}' - имя, которое '{now}' носил до 12.07.2016; читается как он"),
+    )
+}
+
+/// A former block that drew any shape, and cannot be read as one that draws this one.
+pub(crate) fn no_painter(element: &str, shape: Option<&str>) -> Words {
+    let list = |locale| {
+        let all = crate::blocks::painted();
+        let all = all.map(|(shape, row)| format!("{shape} - '{}'", row.shown_in(locale)));
+        all.collect::<Vec<_>>().join(", ")
+    };
+    let (english, russian) = (list(Locale::English), list(Locale::Russian));
+    let shape = short(shape.unwrap_or_default());
+    Words::new(
+        format!(
+            "'{element}' is a block of an old version, and what it draws is not known from its shape '{shape}': draw one of these instead: {english}"
+        ),
+        format!(
+            "'{element}' - блок старой версии, и по его фигуре '{shape}' не понять, что он рисует: поставьте вместо него один из этих: {russian}"
+        ),
+    )
+}
+
+/// A port that only a former block had.
+pub(crate) fn gone_port(name: &str, row: &Row) -> Words {
+    Words::new(
+        format!(
+            "the port {name} is of an old version, and '{}' has none: delete this edge, and set colours by a block 'Paint settings'",
+            row.shown
+        ),
+        format!(
+            "порт {name} был у старой версии, у '{}' его нет: удалите эту линию и задавайте цвета блоком 'Кисть и фон'",
+            row.russian
+        ),
     )
 }
 

@@ -1,6 +1,6 @@
 //! Element names of saves before 2016-07-12, with how their ports were numbered.
 //!
-//! Owns the list. A former port is known by the name of the present one; a port that there is no more has none.
+//! Owns the list. A former port is known by the name of the present one; one that there is no more has its former name.
 
 /// An element name that is no longer written.
 #[derive(Debug)]
@@ -9,14 +9,22 @@ pub struct Former {
     pub element: &'static str,
     /// The present one.
     pub now: &'static str,
+    /// What the property [`SHAPE`] says of those that have become this one, if it has become several.
+    pub shape: Option<&'static str>,
     /// Names of the present ports by former numbers; `None`: the numbers are the same.
     pub ports: Option<&'static [&'static str]>,
 }
+
+/// The property that says what a painter of shapes draws.
+pub const SHAPE: &str = "shapeType";
+/// Blocks that drew any shape. The second one was in no version that anybody could draw with, so its ports are not known.
+pub(super) const PAINTERS: [&str; 2] = ["ShapePainter", "DFShapePainterBlock"];
 
 const fn same(element: &'static str, now: &'static str) -> Former {
     Former {
         element,
         now,
+        shape: None,
         ports: None,
     }
 }
@@ -25,7 +33,18 @@ const fn other(element: &'static str, now: &'static str, ports: &'static [&'stat
     Former {
         element,
         now,
+        shape: None,
         ports: Some(ports),
+    }
+}
+
+/// A painter drew what a list of numbers said, and had a block for each shape later. How CONFIG said a colour is not known.
+const fn painter(shape: &'static str, now: &'static str) -> Former {
+    Former {
+        element: PAINTERS[0],
+        now,
+        shape: Some(shape),
+        ports: Some(&["CF_OUT", "CONFIG", "COORDS"]),
     }
 }
 
@@ -101,4 +120,9 @@ pub(super) const FORMER: &[Former] = &[
     same("DelayFilterNode", "DFDelayFilterBlock"),
     fork("ForkNode"),
     fork("EndFork"),
+    painter("point", "DFDrawPixelBlock"),
+    painter("line", "DFDrawLineBlock"),
+    painter("rectangle", "DFDrawRectBlock"),
+    painter("ellipse", "DFDrawCircleTrikBlock"),
+    painter("arc", "DFDrawArcTrikBlock"),
 ];

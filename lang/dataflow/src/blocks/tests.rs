@@ -64,7 +64,10 @@ fn former_names_lead_to_ports_that_there_are() {
     for former in former::FORMER {
         let row = find(former.now).expect(former.now);
         for name in former.ports.unwrap_or_default() {
-            assert!(row.port(name).is_some(), "{}: {name}", former.element);
+            // Nobody knows what came to this one.
+            let is_gone = former.shape.is_some() && *name == "CONFIG";
+            let is_there = row.port(name).is_some();
+            assert!(is_there != is_gone, "{}: {name}", former.element);
         }
         assert!(find(former.element).is_none(), "{}", former.element);
     }

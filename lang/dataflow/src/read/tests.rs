@@ -115,6 +115,67 @@ fn former_elements_keep_their_meaning() {
     assert_eq!(machine.errors(), []);
 }
 
+/// A program in which a former block draws this shape, as it is read, and what is told of it.
+fn painted(shape: &str, block: &str, list: &str, config: bool) -> (Project, Vec<String>) {
+    let text = format!(
+        "V Value generator {{varValue={list}}}\nP {block}\nS Say\nV.OUT > P.COORDS\nP.CF_OUT > S.CF_IN"
+    );
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    main.blocks[1].element = "ShapePainter".to_owned();
+    let properties = &mut main.blocks[1].properties;
+    properties.insert("shapeType".to_owned(), shape.to_owned());
+    // CF_OUT was 0 then, CONFIG 1, and SHAPE 2.
+    let port = if config { 1 } else { 2 };
+    main.edges[0].to = Some(End { block: 1, port });
+    main.edges[1].from = Some(End { block: 1, port: 0 });
+    again(&with_ids(made(vec![main])))
+}
+
+#[test]
+fn a_former_painter_is_the_block_of_its_shape_or_says_what_to_draw() {
+    for (shape, block, list) in [
+        ("point", "Draw pixel", "[1, 2]"),
+        ("line", "Draw line", "[1, 2, 3, 4]"),
+        ("rectangle", "Draw rectangle", "[1, 2, 3, 4]"),
+        ("ellipse", "Draw circle", "[1, 2, 3, 4]"),
+        ("Arc", "Draw arc", "[1, 2, 3, 4, 5, 6]"),
+    ] {
+        let (read, told) = painted(shape, block, list, false);
+        assert_eq!(
+            read.diagrams[0].blocks[1].row.map(|row| row.shown),
+            Some(block)
+        );
+        let is_named = told.iter().any(|told| told.contains("'ShapePainter'"));
+        assert!(is_named, "{told:?}");
+        let checked = crate::check::check(&read);
+        assert!(!checked.has_errors(), "{shape}: {:?}", checked.problems);
+        let mut machine = crate::machine::Machine::new(std::rc::Rc::new(checked.program));
+        let mut robot = lang_diagram::stand_in::StandIn::default();
+        machine.step(0, &mut robot, &mut crate::machine::trace::Deaf);
+        assert_eq!(machine.errors(), [], "{shape}");
+        // The list has to be as long as that of the shape.
+        let (read, _) = painted(shape, block, "[1, 2, 3]", false);
+        assert!(crate::check::check(&read).has_errors(), "{shape}");
+    }
+    let (read, told) = painted("star", "Draw line", "[1, 2, 3, 4]", false);
+    assert!(read.diagrams[0].blocks[1].row.is_none());
+    let told = told.join("\n");
+    for part in [
+        "'ShapePainter'",
+        "'star'",
+        "line - 'Draw line'",
+        "arc - 'Draw arc'",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let (_, told) = painted("line", "Draw line", "[1, 2, 3, 4]", true);
+    let told = told.join("\n");
+    assert!(
+        told.contains("the port CONFIG is of an old version"),
+        "{told}"
+    );
+}
+
 #[test]
 fn what_an_editor_has_lost_is_counted_and_put_back() {
     let main = diagram("main", DiagramKind::Main, "A Sensor\nS Say\nA.OUT > S.DATA");
