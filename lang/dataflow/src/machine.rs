@@ -190,6 +190,7 @@ impl Machine {
                     let words = words::too_many_variables();
                     return Err(self.fault_at(Place::default(), words));
                 }
+                self.tell_lacking(env);
                 if let Some(main) = env.program.instances.first() {
                     let starts = main.starts.iter().map(|&start| (start, Value::Nil));
                     self.deliveries.extend(starts);

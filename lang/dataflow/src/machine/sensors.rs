@@ -13,6 +13,7 @@ use lang_diagram::brick::{Brick, Command};
 use lang_diagram::ports::{Port, Sort};
 use lang_expr::reserved::SensorIndex;
 use lang_expr::{Outside, Value};
+use lang_text::problem::Problem;
 use std::collections::BTreeMap;
 
 /// What sensors say in an instant: each is asked once, so that all blocks see the same.
@@ -155,6 +156,27 @@ impl Machine {
         }
     }
 
+    /// Sensors that the robot does not have and that blocks ask for later are told before anything moves: the first such
+    /// block that starts ends the program. Those of blocks that start now end it now.
+    pub(super) fn tell_lacking(&mut self, env: &mut Env<'_>) {
+        let main = env.program.instances.first();
+        let starts = main.map_or(&[][..], |main| &main.starts);
+        for (id, node) in (0..).zip(&env.program.nodes) {
+            let Op::Source(source @ Source::Sensor(_)) = &node.op else {
+                continue;
+            };
+            let starts_now = starts.iter().any(|start| start.node == id);
+            if starts_now || self.is_readable(source, env) {
+                continue;
+            }
+            if self.warnings.len() < lang_text::limits::PROBLEMS {
+                let mut problem = Problem::warning(words::no_reading_later());
+                problem.place = env.program.place(id);
+                self.warnings.push(problem);
+            }
+        }
+    }
+
     /// What a block would give now that gives one sensor's readings.
     fn reading(&mut self, source: &Source, env: &mut Env<'_>) -> Option<Value> {
         match source {
@@ -203,7 +225,7 @@ impl Machine {
             && !std::mem::replace(has_failed, true)
             && self.warnings.len() < lang_text::limits::PROBLEMS
         {
-            let mut problem = lang_text::problem::Problem::warning(words::reading_failed());
+            let mut problem = Problem::warning(words::reading_failed());
             problem.place = env.program.place(id);
             self.warnings.push(problem);
         }

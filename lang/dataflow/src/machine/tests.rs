@@ -1,5 +1,6 @@
 //! Programs that run: the traces and the small cases of the language, on a robot by script.
 
+mod lacking;
 mod micro;
 mod rules;
 mod traces;

@@ -212,6 +212,13 @@ pub(crate) fn no_reading(device: &str) -> Words {
     )
 }
 
+pub(crate) fn no_reading_later() -> Words {
+    Words::new(
+        "the robot has no such device, or it says nothing: when this block is started, the program ends with an error",
+        "у робота нет такого устройства, или оно молчит: когда этот блок запустится, программа закончится ошибкой",
+    )
+}
+
 pub(crate) fn reading_failed() -> Words {
     Words::new(
         "the sensor says nothing for a while, so no tokens come from it",

@@ -1,0 +1,45 @@
+//! Sensors that the robot does not have.
+
+use super::*;
+
+#[test]
+fn a_missing_sensor_that_is_asked_later_is_told_before_anything_moves() {
+    let text = "
+        G Motors {M3Power=40}
+        W Wait and send {time=100}
+        A Sensor {VarName=sensorA1}
+        B Sensor {VarName=sensorD1}
+        S Say
+        G.CF_OUT > W.CF_IN
+        W.CF_OUT > A.CF_IN
+        W.CF_OUT > B.CF_IN
+        A.OUT > S.DATA
+        B.OUT > S.DATA";
+    let main = diagram("main", DiagramKind::Main, text);
+    let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+    robot.readings.insert("D1", vec![5]);
+    machine.step(0, &mut robot, &mut Deaf);
+    let told: Vec<String> = machine.warnings().iter().map(ToString::to_string).collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].contains("main: Sensor 'A': the robot has no such device"),
+        "{told:?}"
+    );
+    assert_eq!(machine.status(), Status::Running);
+    for now in (10..=100).step_by(10) {
+        machine.step(now, &mut robot, &mut Deaf);
+    }
+    assert_eq!(machine.errors().len(), 1);
+    // One that has come meanwhile is a sensor like any other.
+    let main = diagram("main", DiagramKind::Main, text);
+    let (mut machine, mut robot) = (super::machine(&project(vec![main])), Script::default());
+    machine.step(0, &mut robot, &mut Deaf);
+    assert_eq!(machine.warnings().len(), 2);
+    robot.readings.insert("A1", vec![4]);
+    robot.readings.insert("D1", vec![5]);
+    for now in (10..=140).step_by(10) {
+        machine.step(now, &mut robot, &mut Deaf);
+    }
+    assert_eq!(machine.status(), Status::Running);
+    assert_eq!(robot.commands.last().map(String::as_str), Some("say \"5\""));
+}
