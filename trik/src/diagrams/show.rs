@@ -1,4 +1,4 @@
-//! `trik show`: a diagram for the eye, as sentences or as a picture.
+//! `trik show`: a diagram for the eye, as sentences or as a picture, and a data-flow program in its other form.
 //!
 //! Owns which diagram of a project is meant. What is shown of it is the business of `lang`.
 
@@ -30,6 +30,9 @@ pub(crate) struct ShowArgs {
     /// Print a data-flow program in its textual form, which all commands read from a file NAME.flow.
     #[arg(long, conflicts_with_all = ["svg", "text"])]
     pub source: bool,
+    /// Write a data-flow program as a save, which the editor of the language opens, into a new file; - is standard output.
+    #[arg(long, value_name = "OUT.qrs", conflicts_with_all = ["svg", "text", "source", "all", "diagram"])]
+    pub save: Option<PathBuf>,
     /// Say also the properties of a data-flow program that have their defaults.
     #[arg(long, conflicts_with_all = ["svg", "source"])]
     pub all: bool,
@@ -37,8 +40,8 @@ pub(crate) struct ShowArgs {
     /// subprograms that it calls; without this option, those of a data-flow program are of all its diagrams.
     #[arg(long, value_name = "NAME")]
     pub diagram: Option<String>,
-    /// Overwrite OUT.svg if it exists.
-    #[arg(long, requires = "svg")]
+    /// Overwrite OUT.svg or OUT.qrs if it exists.
+    #[arg(long)]
     pub force: bool,
     /// Language of sentences and messages: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
@@ -52,8 +55,20 @@ pub(crate) struct ShowArgs {
 pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     let mut opened = match must(flow::open(&args.file), &args.file, args.language)? {
         flow::Program::Diagram(opened) => opened,
-        flow::Program::Flow(flow, _) | flow::Program::Text(flow) => return show_flow(args, flow),
+        flow::Program::Text(flow) => return show_flow(args, flow),
+        flow::Program::Flow(flow, _) => {
+            if args.save.is_some() {
+                return Err(Refusal::new(
+                    "--save is for programs as text, and this is a save",
+                ));
+            }
+            return show_flow(args, flow);
+        }
     };
+    if args.save.is_some() {
+        let why = "--save is for data-flow programs as text, and this is a save with a diagram of control flow";
+        return Err(Refusal::new(why));
+    }
     if args.source {
         let why = "--source is for data-flow programs, and this is a diagram of control flow";
         return Err(Refusal::new(why));
@@ -66,7 +81,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     let chosen = choose(names, opened.project.main, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {
         let picture = picture(&opened.project.diagrams[chosen], args.language);
-        return write_picture(args, svg, &picture);
+        return write(args, svg, picture.as_bytes());
     }
     // The program begins there.
     opened.project.main = Some(chosen);
@@ -91,12 +106,17 @@ fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
         standard(lang_dataflow::text::write(&project).as_bytes())?;
         return Ok(0);
     }
+    if let Some(save) = &args.save {
+        let bytes = lang_dataflow::save::save(&project).write();
+        let bytes = bytes.map_err(|problem| Refusal::new(problem.in_locale(args.language)))?;
+        return write(args, save, &bytes);
+    }
     let names = project.diagrams.iter().map(|one| &*one.name);
     let chosen = choose(names, project.main, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {
         let mut looks = Looks::default();
         let picture = lang_dataflow::show::picture(&project, chosen, args.language, &mut looks);
-        return write_picture(args, svg, &picture);
+        return write(args, svg, picture.as_bytes());
     }
     let extent = Extent {
         with_defaults: args.all,
@@ -107,15 +127,15 @@ fn show_flow(args: &ShowArgs, flow: Flow) -> Result<u8, Refusal> {
     Ok(0)
 }
 
-fn write_picture(args: &ShowArgs, svg: &Path, picture: &str) -> Result<u8, Refusal> {
+fn write(args: &ShowArgs, path: &Path, bytes: &[u8]) -> Result<u8, Refusal> {
     let output = Output {
-        path: Some(svg),
+        path: Some(path),
         force: args.force,
         source: &args.file,
         locale: args.language,
     };
     output.refuse_present()?;
-    output.write(picture.as_bytes())?;
+    output.write(bytes)?;
     Ok(0)
 }
 

@@ -81,6 +81,18 @@ fn saves_and_texts_are_shown_and_become_each_other() {
     board.file("again.flow", &source.stdout);
     let again = trik(&board, &["show", "again.flow", "--source"]);
     assert_eq!(again.stdout, source.stdout);
+    let saved = trik(&board, &["show", "again.flow", "--save", "again.qrs"]);
+    assert_eq!(saved.code(), 0, "{}", saved.stderr);
+    let back = trik(&board, &["show", "again.qrs", "--source"]);
+    assert_eq!(back.stdout, source.stdout);
+    for (file, why) in [
+        ("again.flow", "again.qrs is there already"),
+        ("wall.qrs", "this is a save"),
+    ] {
+        let refused = trik(&board, &["show", file, "--save", "again.qrs"]);
+        assert_eq!(refused.code(), 1, "{}", refused.stderr);
+        assert!(refused.stderr.contains(why), "{}", refused.stderr);
+    }
     let picture = trik(&board, &["show", "wall.qrs", "--svg", "wall.svg"]);
     assert_eq!(picture.code(), 0, "{}", picture.stderr);
     let svg = fs::read_to_string(board.path("wall.svg")).expect("a picture");
