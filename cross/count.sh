@@ -5,14 +5,15 @@
 # usage: cross/count.sh [POLLS]
 #
 # Builds lang/dataflow/benches/converter.rs as the robot's programs are built, and runs it twice in an emulator that counts
-# instructions: the second time with POLLS more polls (200 if no number is given), so that the start is not in the
-# difference. TRIK_COUNTED names the benchmark if it is built already. cross/toolchain.sh comes first, once, and the
-# package qemu-user: the static emulator of the other scripts takes no plugins. TRIK_QEMU names another qemu-arm.
+# instructions: the second time with POLLS more polls (1000 if no number is given), so that the start, whose cost differs a
+# little from run to run, is hardly in the difference. TRIK_COUNTED names the benchmark if it is built already.
+# cross/toolchain.sh comes first, once, and the package qemu-user: the static emulator of the other scripts takes no
+# plugins. TRIK_QEMU names another qemu-arm.
 set -euo pipefail
 # shellcheck source=cross/lib.sh
 . "$(dirname "$0")/lib.sh"
 help_if_asked "$@"
-polls=${1:-200}
+polls=${1:-1000}
 case $polls in
 '' | 0* | *[!0-9]*)
     printf 'count.sh: %s is no number of polls; see --help\n' "$polls" >&2
