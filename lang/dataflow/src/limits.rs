@@ -104,3 +104,13 @@ pub const TAP_BLOCKS_MAX: usize = 1000;
 pub const TAP_CELLS_MAX: u32 = 64;
 /// For how many milliseconds after a look tokens are kept for the next one.
 pub const TAP_MS: u32 = 5000;
+/// Blocks of a program of which a recording has what happens; of more it has how much that was.
+pub const DIARY_BLOCKS_MAX: usize = 5000;
+/// Bytes that a recording has of that in a millisecond: ten minutes of it are less than a page takes.
+pub const DIARY_BYTES_PER_MS: usize = 20;
+/// The same at once: a line of a recording with variables is no longer than it may be.
+pub const DIARY_BYTES_MAX: usize = 4 << 10;
+/// Characters of one text in it.
+pub const DIARY_CHARACTERS_MAX: usize = 100;
+/// Milliseconds after which a block that goes on is named again: of a black box the beginning may be gone.
+pub const DIARY_NAMES_MS: u32 = 10_000;
