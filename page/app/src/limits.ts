@@ -20,7 +20,7 @@ export const SCHEMA_FIELDS_MAX = 1024;
 /** Numbers of a recording that are kept, of eight bytes each. */
 export const NUMBERS_MAX = 16 << 20;
 /** Bytes of texts, lines and pictures of a recording that are kept. */
-export const TEXT_BYTES_MAX = 32 << 20;
+export const TEXT_BYTES_MAX = 64 << 20;
 /** What a text costs besides its letters. */
 export const TEXT_COST = 64;
 /** The page does something else after so much reading. */

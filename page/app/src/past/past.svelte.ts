@@ -46,6 +46,8 @@ export class Past {
   running = $state('');
   /** Where a diagram was. */
   told = $state.raw<DebuggerState | undefined>(undefined);
+  /** Blocks of data flow at which something had happened lately. */
+  lit = $state.raw<ReadonlySet<string>>(new Set());
   #lineCount = 0;
   #stepCount = 0;
   readonly #steps: Steps;
@@ -86,6 +88,9 @@ export class Past {
       this.#stepCount = stepCount;
       this.told = running && this.#steps.at(this.#now, running.since);
     }
+    const lit = running ? this.#steps.litAt(this.#now) : new Set<string>();
+    // Views are made anew only for something else.
+    if (lit.size !== this.lit.size || [...lit].some((id) => !this.lit.has(id))) this.lit = lit;
     this.changed();
   }
 

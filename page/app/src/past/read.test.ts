@@ -202,7 +202,7 @@ describe('what is refused', () => {
     const big = (letter: number) =>
       long(glued(Uint8Array.from(u32(9 << 20)), new Uint8Array(9 << 20).fill(letter)));
     const before = file(schema(1, 'string word'), channel(1, 1, '/n', { format: 'text 9' }));
-    const bytes = glued(before.subarray(0, -END_BYTES), big(65), big(66), big(67));
+    const bytes = glued(before.subarray(0, -END_BYTES), big(65), big(66), big(67), big(68));
     const wrong = wrongOf(bytes);
     expect(wrong?.what).toBe('much');
     expect(wrong?.at).toBeGreaterThan(0);

@@ -38,3 +38,41 @@ it('a diagram has the variables that were assigned until then, forward and back'
   expect(steps.at(5.5, 4)?.threads?.[0]).toMatchObject({ name: 'main', at: { id: 'i' } });
   expect(steps.at(8, 4)?.threads?.length).toBe(1);
 });
+
+it('blocks of data flow have reacted lately, and ports the last token, forward and back', () => {
+  const told = (time: number, ms: number, more: object) =>
+    line('/diagram', time, '', JSON.stringify({ ms, threads: [], variables: {}, ...more }));
+  const token = (port: string, value: string, count: number) => ({ port, type: 'int', value, count });
+  const named = { diagram: 'd', block: 'Function', caption: 'F' };
+  const steps = new Steps([
+    told(5, 0, { anew: true, blocks: [{ id: 'f', ...named, reacted: 1, ports: [token('O0', '7', 1)] }] }),
+    told(6, 1000, {
+      blocks: [
+        { id: 'f', reacted: 3, ports: [token('O1', '8', 2)] },
+        { id: 'f', instance: 1, ports: [token('O0', '1', 4)] },
+        { id: 'g', reacted: 1 },
+        'no block',
+        { ports: [{ port: 1, value: [], count: 'x' }] },
+      ],
+      blocks_left_out: 2,
+    }),
+    told(7, 2000, { anew: true, blocks: [{ id: 'g', reacted: 1 }] }),
+  ]);
+  const ports = (time: number) =>
+    steps
+      .at(time, 4)
+      ?.ports?.map(({ id, caption, port, value, count }) => `${id}${caption}.${port}=${value}*${count}`);
+  expect(ports(5.5)).toEqual(['fF.O0=7*1']);
+  expect([...steps.litAt(5.5)]).toEqual(['f']);
+  expect([...steps.litAt(5.6)]).toEqual([]);
+  expect(ports(6)).toEqual(['fF.O0=7*1', 'fF.O1=8*2', 'f.O0=1*4', '.=*0']);
+  expect([...steps.litAt(6)]).toEqual(['f', 'g', '']);
+  expect(steps.at(6, 4)).toMatchObject({
+    leftOut: 2,
+    reacted: [{ count: 3 }, { count: 0 }, { count: 1 }, {}],
+  });
+  // A new version of the program begins to count.
+  expect(ports(7)).toEqual([]);
+  expect(ports(5.5)).toEqual(['fF.O0=7*1']);
+  expect(steps.at(4.5, 4)?.ports).toBeUndefined();
+});

@@ -1,11 +1,13 @@
-// Where programs were in the course of a recording: which one ran, and the blocks and variables of a diagram.
+// Where programs were in the course of a recording: which one ran, the blocks and variables of a diagram, and what happened at
+// the blocks of a program of data flow.
 //
 // Owns the reading of lines of `/programs` and `/diagram`; docs/protocol.md has what the latter say. Believes nothing.
 
-import { VALUE_LETTERS_MAX } from '../limits';
+import { SEEN_MS } from '../diagram/flow';
+import { TOLD_NAME_LETTERS_MAX, VALUE_LETTERS_MAX } from '../limits';
 import { isObject } from '../robot/plain';
 import type { Line } from '../robot/recording';
-import type { DebuggerState, Place, Thread, Variable } from '../robot/told';
+import type { DebuggerState, LastToken, Place, Thread, Variable } from '../robot/told';
 
 /** How many lines are not later than a time. */
 export function countUntil(lines: readonly Line[], time: number): number {
@@ -29,11 +31,22 @@ export function runningAt(lines: readonly Line[], time: number): { name: string;
   return undefined;
 }
 
+/** A block of data flow, as far as it was told. */
+interface FlowBlock extends Place {
+  caption: string;
+  reacted: number;
+  ports: Map<string, { type: string; value: string; count: number }>;
+  /** When something was told of it last. */
+  time: number;
+}
+
 /** The diagram in the course of time: each line says what has changed, so going forward costs little. */
 export class Steps {
   #next = 0;
   #since = NaN;
   readonly #variables = new Map<string, unknown>();
+  /** Of each call, by their ids. */
+  readonly #blocks = new Map<string, FlowBlock>();
   #last: Record<string, unknown> | undefined;
 
   /** Lines of `/diagram` alone. */
@@ -46,16 +59,24 @@ export class Steps {
       this.#since = since;
       this.#next = countUntil(this.lines, since);
       this.#variables.clear();
+      this.#blocks.clear();
       this.#last = undefined;
     }
-    for (; this.#next < end; this.#next++) this.#take(this.lines[this.#next]?.text ?? '');
+    for (; this.#next < end; this.#next++) this.#take(this.lines[this.#next]);
     return this.#last && this.#told(this.#last);
   }
 
-  #take(text: string): void {
+  /** Blocks of data flow at which something has happened lately, at the time that was asked for last or a later one. */
+  litAt(time: number): ReadonlySet<string> {
+    const lit = new Set<string>();
+    for (const block of this.#blocks.values()) if ((time - block.time) * 1000 <= SEEN_MS) lit.add(block.id);
+    return lit;
+  }
+
+  #take(line: Line | undefined): void {
     let value: unknown;
     try {
-      value = JSON.parse(text);
+      value = JSON.parse(line?.text ?? '');
     } catch {
       return;
     }
@@ -63,10 +84,44 @@ export class Steps {
     this.#last = value;
     if (isObject(value.variables))
       for (const [name, one] of Object.entries(value.variables)) this.#variables.set(name, one);
+    if (value.anew === true) this.#blocks.clear();
+    for (const one of objects(value.blocks)) this.#takeBlock(one, line?.time ?? 0);
+  }
+
+  #takeBlock(told: Record<string, unknown>, time: number): void {
+    const key = `${text(told.id)} ${count(told.instance)}`;
+    let block = this.#blocks.get(key);
+    if (!block) {
+      const named = { diagram: '', block: '', caption: '' };
+      this.#blocks.set(key, (block = { ...named, id: text(told.id), reacted: 0, ports: new Map(), time }));
+    }
+    block.time = time;
+    // Names come only now and then.
+    if ('caption' in told) Object.assign(block, placeOf(told), { caption: text(told.caption) });
+    block.reacted = Math.max(block.reacted, count(told.reacted));
+    for (const one of objects(told.ports)) {
+      const token = { type: text(one.type), value: text(one.value), count: count(one.count) };
+      block.ports.set(text(one.port), token);
+    }
+  }
+
+  /** What is known of blocks of data flow. */
+  #flow(last: Record<string, unknown>): Partial<DebuggerState> {
+    if (this.#blocks.size === 0) return {};
+    const blocks = [...this.#blocks.values()];
+    const ports = blocks.flatMap(({ ports, diagram, id, block, caption }) =>
+      [...ports].map(([port, token]): LastToken => ({ diagram, id, block, caption, port, ...token })),
+    );
+    const leftOut = count(last.blocks_left_out);
+    return {
+      ports,
+      reacted: blocks.map(({ diagram, id, block, reacted }) => ({ diagram, id, block, count: reacted })),
+      ...(leftOut > 0 ? { leftOut } : {}),
+    };
   }
 
   #told(last: Record<string, unknown>): DebuggerState {
-    const threads = Array.isArray(last.threads) ? last.threads.filter(isObject) : [];
+    const threads = objects(last.threads);
     const variables = [...this.#variables].map(([name, value]): Variable => ({
       name,
       type: typeof value === 'number' && !Number.isInteger(value) ? 'float' : '',
@@ -80,9 +135,22 @@ export class Steps {
         at: placeOf(thread),
       })),
       variables,
+      ...this.#flow(last),
       ...(typeof last.ms === 'number' ? { ms: last.ms } : {}),
     };
   }
+}
+
+function objects(value: unknown): Record<string, unknown>[] {
+  return Array.isArray(value) ? value.filter(isObject) : [];
+}
+
+function text(value: unknown): string {
+  return typeof value === 'string' ? value.slice(0, TOLD_NAME_LETTERS_MAX) : '';
+}
+
+function count(value: unknown): number {
+  return typeof value === 'number' && value > 0 && Number.isFinite(value) ? value : 0;
 }
 
 function placeOf(thread: Record<string, unknown>): Place {
