@@ -253,6 +253,9 @@ pub const WATCH_MS: u32 = 50;
 pub const WATCH_LINE_BYTES: usize = 1024;
 /// Bytes after which no more variables are told.
 pub const WATCH_JSON_BYTES: usize = 32 << 10;
+/// Bytes of variables of a data-flow program beside which what happens at its blocks has room in one line of a recording, which
+/// has 8 KiB.
+pub const WATCH_BESIDE_BYTES: usize = 2 << 10;
 /// Characters of a text that is told.
 pub const WATCH_TEXT_CHARACTERS: usize = 1024;
 /// Bytes that the past of a diagram takes while it is debugged on the robot.

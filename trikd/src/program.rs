@@ -317,6 +317,8 @@ impl Supervisor {
             orders: VecDeque::new(),
             ended: None,
         });
+        // Together with its beginning, so that a recording has that.
+        self.send_watch();
     }
 
     fn broadcast(&self, text: &str) {

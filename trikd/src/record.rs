@@ -10,6 +10,7 @@ use journal::standard::Level;
 use journal::write::Story;
 use recorder::desk::{Desk, Listener};
 use recorder::kept::{self, SaveReason};
+use std::cell::Cell;
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,6 +22,8 @@ pub const LIBRARY: &str = concat!("trikd/", env!("CARGO_PKG_VERSION"));
 /// Looks at the tree for everything that wants to see it.
 pub struct Record {
     desk: Desk,
+    /// Somebody has begun to hear who does not know yet where a diagram is.
+    has_newcomer: Cell<bool>,
 }
 
 impl fmt::Debug for Record {
@@ -48,7 +51,11 @@ impl Record {
             },
             |saved| tell(&saved),
         );
-        desk.map(|desk| Self { desk }).map_err(Error::Recorder)
+        let desk = desk.map_err(Error::Recorder)?;
+        Ok(Self {
+            desk,
+            has_newcomer: Cell::new(false),
+        })
     }
 
     /// Whether anybody hears what is told here.
@@ -96,6 +103,12 @@ impl Record {
     /// Somebody hears everything from now on.
     pub fn listen(&self, listener: Box<dyn Listener>) {
         self.desk.listen(listener);
+        self.has_newcomer.set(true);
+    }
+
+    /// Whether somebody has begun to hear since this was asked last.
+    pub fn take_newcomer(&self) -> bool {
+        self.has_newcomer.take()
     }
 }
 

@@ -15,6 +15,7 @@ use crate::protocol::news;
 use crate::protocol::program::ALL;
 use crate::scripts::ending;
 use lang_dataflow::debug::Desk;
+use lang_dataflow::diary::Diary;
 use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::patch::{Refused, Version};
 use lang_dataflow::machine::trace::{Deaf, Trace};
@@ -22,7 +23,9 @@ use lang_dataflow::program::{NodeId, Program};
 use lang_dataflow::project::Project;
 use lang_dataflow::read::{Language, language};
 use lang_diagram::machine::Status;
+use lang_expr::Value;
 use lang_text::problem::{Locale, Problem, Severity};
+use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
@@ -45,13 +48,22 @@ pub(super) fn of_text(bytes: Vec<u8>, locale: Locale) -> Result<Project, NoDiagr
 /// What is heard of a machine.
 struct Heard<'a> {
     watch: &'a mut Watch,
-    /// Whether a block has reacted.
-    has_fired: bool,
+    /// While somebody looks or records.
+    diary: Option<&'a mut Diary>,
 }
 
 impl Trace for Heard<'_> {
-    fn fired(&mut self, _now: u32, _node: NodeId) {
-        self.has_fired = true;
+    fn sent(&mut self, now: u32, from: NodeId, port: u8, value: &Value) {
+        if let Some(diary) = &mut self.diary {
+            diary.sent(now, from, port, value);
+        }
+    }
+
+    fn fired(&mut self, now: u32, node: NodeId) {
+        self.watch.fired();
+        if let Some(diary) = &mut self.diary {
+            diary.fired(now, node);
+        }
     }
 
     fn trap(&mut self, _now: u32, problem: &Problem) {
@@ -63,6 +75,8 @@ impl Trace for Heard<'_> {
 struct Flow {
     desk: Desk,
     motors: Motors,
+    /// What happens at its blocks, while somebody looks or records.
+    diary: Option<Diary>,
     /// Warnings that were told.
     warned: usize,
     was_stopped: bool,
@@ -84,6 +98,7 @@ pub(super) fn run(
             limits::DEBUG_HISTORY_BYTES,
         ),
         motors: Motors::default(),
+        diary: None,
         warned: 0,
         was_stopped: false,
         told_at: 0,
@@ -105,35 +120,73 @@ impl Flow {
     fn steps(&mut self, robot: &mut Robot<'_>, watch: &mut Watch, host: &Host) -> io::Result<()> {
         let start = Instant::now();
         let mut due = start;
+        let mut early = self.look_first(watch, host)?;
         loop {
             let now = since(start);
             let mut heard = Heard {
                 watch,
-                has_fired: false,
+                diary: self.diary.as_mut(),
             };
             let status = self
                 .desk
                 .step(now, &mut self.motors.over(robot), &mut heard);
-            let has_fired = heard.has_fired;
             self.motors.settle(self.desk.is_at_rest(), robot);
             let warnings = self.desk.machine().warnings();
             for problem in warnings.iter().skip(self.warned) {
                 host.info(&problem.in_locale(watch.locale()))?;
             }
             self.warned = warnings.len();
-            watch.report_flow(self.desk.machine(), has_fired, now, host)?;
-            self.report(now, status != Status::Running, host)?;
-            if status != Status::Running {
+            let is_over = status != Status::Running;
+            let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
+            match is_over {
+                true => watch.last_of_flow(machine, diary, now, host)?,
+                false => watch.report_flow(machine, diary, now, host)?,
+            }
+            self.report(now, is_over, host)?;
+            if is_over {
                 return Ok(());
             }
             robot.go_on();
             // Steps that are missed are not made up: timers look at the time, not at steps.
             due = next_step(due, Instant::now());
+            for message in early.drain(..) {
+                if matches!(message, Incoming::Gone) {
+                    return Ok(());
+                }
+                self.hear(message, since(start), (robot, watch), host)?;
+            }
             let hear = |message| self.hear(message, since(start), (robot, watch), host);
             if !hear_until(due, host, hear)? {
                 return Ok(());
             }
         }
+    }
+
+    /// Whether somebody looks is known before the first instant, so that this is not missed; all else that has come is heard
+    /// after it.
+    fn look_first(&mut self, watch: &mut Watch, host: &Host) -> io::Result<VecDeque<Incoming>> {
+        let mut early = VecDeque::new();
+        while let Some(message) = host.waiting()? {
+            match message {
+                Incoming::Watch(is_wanted) => {
+                    watch.set_wanted(is_wanted);
+                    self.keep_diary(is_wanted);
+                }
+                Incoming::Gone => {
+                    early.push_back(message);
+                    break;
+                }
+                Incoming::Mail(..)
+                | Incoming::Reply(..)
+                | Incoming::Web
+                | Incoming::Patch(..)
+                | Incoming::Set(_)
+                | Incoming::Debug { .. }
+                | Incoming::DebugLeft
+                | Incoming::Direct(_) => early.push_back(message),
+            }
+        }
+        Ok(early)
     }
 
     /// Tells all who debug what is new, if it is time; after an order it always is.
@@ -169,9 +222,17 @@ impl Flow {
                 let variables = self.desk.machine().variables();
                 host.web(&super::watch::variables_of(variables))?;
             }
-            Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
+            Incoming::Watch(is_wanted) => {
+                watch.set_wanted(is_wanted);
+                self.keep_diary(is_wanted);
+            }
             // There are no threads whose block could be gone.
             Incoming::Patch(_, path) => {
+                // Blocks have other numbers then.
+                if self.diary.as_ref().is_some_and(Diary::has_news) {
+                    let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
+                    watch.last_of_flow(machine, diary, now, host)?;
+                }
                 let answer = self.patch(&path, robot, watch.locale());
                 host.changed(answer.is_changed, &answer.text)?;
                 self.report(now, true, host)?;
@@ -199,6 +260,15 @@ impl Flow {
         Ok(())
     }
 
+    /// What happens is kept while somebody wants to know it; who has missed some of it is told all once more.
+    fn keep_diary(&mut self, is_wanted: bool) {
+        match (&mut self.diary, is_wanted) {
+            (Some(diary), true) => diary.tell_again(),
+            (None, true) => self.diary = Some(Diary::new(self.desk.machine().program())),
+            (_, false) => self.diary = None,
+        }
+    }
+
     /// Replaces the program by the one in a file, whole or not at all.
     fn patch(&mut self, path: &Path, robot: &mut Robot<'_>, locale: Locale) -> Answer {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -213,6 +283,9 @@ impl Flow {
         };
         match self.desk.patch(&version, &mut self.motors.over(robot)) {
             Ok(patched) => {
+                if let Some(diary) = &mut self.diary {
+                    *diary = Diary::new(self.desk.machine().program());
+                }
                 // It keeps those that there were.
                 self.warned = self.desk.machine().warnings().len();
                 Answer::changed(&name, &patched.to_string())

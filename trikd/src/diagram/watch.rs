@@ -5,11 +5,12 @@
 
 use crate::host::Host;
 use crate::limits;
+use lang_dataflow::diary::Diary;
 use lang_diagram::machine::Machine;
 use lang_diagram::machine::trace::Trace;
 use lang_diagram::program::Node;
 use lang_expr::Value;
-use lang_text::json;
+use lang_text::json::{self, Object};
 use lang_text::problem::{Locale, Problem};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -28,6 +29,8 @@ pub struct Watch {
     /// Not told yet.
     errors: Vec<String>,
     reported_at: Option<u32>,
+    /// What was told last of a data-flow program had its variables.
+    had_variables: bool,
 }
 
 impl Watch {
@@ -40,6 +43,7 @@ impl Watch {
             changed: BTreeSet::new(),
             errors: Vec::new(),
             reported_at: None,
+            had_variables: false,
         }
     }
 
@@ -84,34 +88,79 @@ impl Watch {
         Ok(())
     }
 
-    /// Tells what is new of a data-flow program, if it is time: all its variables, whenever a block has reacted.
+    /// Tells what is new of a data-flow program, if it is time: all its variables, whenever a block has reacted, and what has
+    /// happened at its blocks.
     pub(super) fn report_flow(
         &mut self,
         machine: &lang_dataflow::machine::Machine,
-        has_fired: bool,
+        mut diary: Option<&mut Diary>,
         now: u32,
         host: &Host,
     ) -> io::Result<()> {
-        self.has_moved |= has_fired;
+        let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
         let errors = std::mem::take(&mut self.errors);
         for error in &errors {
             host.error(error)?;
         }
-        if !self.is_told(self.is_new || self.has_moved, now, &errors) {
+        let is_news = self.is_new || self.has_moved || has_news;
+        if !self.is_told(is_news, now, &errors) {
             return Ok(());
+        }
+        let mut variables = object(machine.variables());
+        // A line of a recording has no room for both: they take turns.
+        let is_long = variables.len() > limits::WATCH_BESIDE_BYTES;
+        let is_turn_of_blocks = is_long && has_news && self.had_variables;
+        if is_turn_of_blocks {
+            "{}".clone_into(&mut variables);
         }
         let values = machine
             .variables()
             .map(|(name, value)| format!("{name} = {}", value.printed()));
         let text = cut(values.collect::<Vec<_>>().join("; "));
-        let mut json = format!(
-            "{{\"ms\":{},\"threads\":[],\"variables\":{}",
-            machine.now(),
-            object(machine.variables())
-        );
-        put_errors(&mut json, &errors);
-        host.watch(&text, &json)?;
+        let mut json = Object::new(limits::WATCH_TEXT_CHARACTERS)
+            .plain("ms", machine.now())
+            .list("threads", [])
+            .plain("variables", variables);
+        if let Some(diary) = &mut diary
+            && (is_turn_of_blocks || !is_long)
+        {
+            json = diary.tell(json, machine.program(), now);
+        }
+        if !errors.is_empty() {
+            json = json.list("errors", errors.iter().map(|error| quoted(error)));
+        }
+        host.watch(&text, &json.done())?;
         self.told(now);
+        self.had_variables = !is_turn_of_blocks;
+        self.has_moved = is_turn_of_blocks;
+        Ok(())
+    }
+
+    /// A block of a data-flow program has reacted.
+    pub(super) fn fired(&mut self) {
+        self.has_moved = true;
+    }
+
+    /// The same at once, for the last time before the program ends, or becomes another one.
+    pub(super) fn last_of_flow(
+        &mut self,
+        machine: &lang_dataflow::machine::Machine,
+        mut diary: Option<&mut Diary>,
+        now: u32,
+        host: &Host,
+    ) -> io::Result<()> {
+        self.is_new = self.is_wanted;
+        // A second line has what the first has no room for.
+        for _ in 0..2 {
+            self.reported_at = None;
+            if let Some(diary) = &mut diary {
+                diary.is_last();
+            }
+            self.report_flow(machine, diary.as_deref_mut(), now, host)?;
+            if !diary.as_ref().is_some_and(|diary| diary.has_news()) {
+                break;
+            }
+        }
         Ok(())
     }
 

@@ -151,10 +151,12 @@ impl Supervisor {
         }
     }
 
-    /// Tells a program when somebody begins or ceases to look at it, and to tell everything again to who has missed some.
+    /// Tells a program when somebody begins or ceases to look at it, and to tell everything again to who has missed some or
+    /// begins to record.
     pub(super) fn send_watch(&mut self) {
         let clients = &self.around.clients;
-        let is_again = clients.take_behind();
+        let is_behind = clients.take_behind();
+        let is_again = self.around.record.take_newcomer() || is_behind;
         let watched = clients.are_watching() || self.around.record.is_heard();
         if let Some(current) = &mut self.current
             && (current.is_watched != watched || watched && is_again)

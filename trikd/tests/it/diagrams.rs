@@ -119,6 +119,106 @@ fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
 }
 
 #[test]
+fn who_asks_sees_the_blocks_of_a_data_flow_program_that_react_and_their_tokens() {
+    let robot = robot(&[]);
+    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
+    stream
+        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
+        .unwrap();
+    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
+    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
+    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    let mut client = robot.client("control");
+    let text = b"diagram \"Count\"\n  hello: Say(text = hello)\n  L: Loop(start_border = 1, end_border = 3, time = 100)\n  F: \"Text programming\"(IO0 = `n = I0 * 2; n`)\n  S: Say\n  L.OUT -> F.I0\n  F.O0 -> S.DATA\n";
+    upload(&mut client, "count.flow", text);
+    client.send("run:count.flow");
+    client.expect("info: count.flow has started");
+    // From its first instant on, and up to the last one.
+    let first = lines.find(|line| line.contains("\"ms\"")).unwrap();
+    assert!(
+        first.contains(",\"anew\":true,\"blocks\":[{\"id\":")
+            && first.contains("\"block\":\"DFSayBlock\",\"caption\":\"hello\",\"reacted\":1}"),
+        "{first}"
+    );
+    let last = lines
+        .find(|line| line.contains(",\"count\":3}"))
+        .expect("the last token");
+    assert!(
+        last.contains("\"variables\":{\"n\":6}")
+            && last.contains("\"reacted\":3,\"ports\":[{\"port\":\"O0\",")
+            && last.contains("\"value\":\"6\",\"count\":3}")
+            && !last.contains("\"anew\""),
+        "{last}"
+    );
+    client.until("info: count.flow has ended");
+}
+
+#[test]
+fn long_variables_and_the_blocks_of_a_data_flow_program_take_turns() {
+    let robot = robot(&[]);
+    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
+    stream
+        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
+        .unwrap();
+    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
+    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
+    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    let mut client = robot.client("control");
+    let long = "x".repeat(1000);
+    let text = format!(
+        "diagram \"Long\"\n  L: Loop(end_border = 1000000, time = 50)\n  F: \"Text programming\"(IO0 = `a = '{long}'; b = a; c = a; 1`)\n  S: Say\n  L.OUT -> F.I0\n  F.O0 -> S.DATA\n"
+    );
+    upload(&mut client, "long.flow", text.as_bytes());
+    client.send("run:long.flow");
+    client.expect("info: long.flow has started");
+    for _ in 0..2 {
+        let is_of_blocks =
+            |line: &String| line.contains("\"variables\":{},") && line.contains("\"port\":\"O0\"");
+        lines.find(is_of_blocks).expect("blocks alone");
+        let variables = lines.next().unwrap();
+        assert!(
+            variables.contains("\"a\":\"xxx") && !variables.contains("\"blocks\""),
+            "{variables}"
+        );
+    }
+    client.send("stop");
+    client.until("info: long.flow was stopped by a client");
+}
+
+#[test]
+fn each_recording_begins_with_all_that_blocks_did_since_one_was_made() {
+    let robot = robot(&[]);
+    let begin = || {
+        let mut recorder = robot.client("control");
+        recorder.send("stream:");
+        recorder.keep_alive();
+        let beginning = recorder.exactly(64);
+        assert_eq!(beginning.len(), 64);
+        recorder
+    };
+    let has_hello = |recorder: &mut Client| {
+        let mut seen = String::new();
+        while seen.len() < 100_000 && !seen.contains("\"caption\":\"hello\",\"reacted\":1}") {
+            seen += &String::from_utf8_lossy(&recorder.exactly(64));
+        }
+        assert!(seen.len() < 100_000, "nothing of that block");
+    };
+    let mut first = begin();
+    let mut client = robot.client("control");
+    let text = b"diagram \"Go\"\n  hello: Say(text = hello)\n  L: Loop(end_border = 1000000, time = 50)\n  S: Say\n  L.OUT -> S.DATA\n";
+    upload(&mut client, "go.flow", text);
+    client.send("run:go.flow");
+    client.expect("info: go.flow has started");
+    client.keep_alive();
+    has_hello(&mut first);
+    // The second one comes while the first one records.
+    let mut second = begin();
+    has_hello(&mut second);
+    client.send("stop");
+    client.until("info: go.flow was stopped by a client");
+}
+
+#[test]
 fn errors_name_the_block_and_stay_with_the_diagram() {
     let robot = robot(&["--language", "ru_RU.UTF-8"]);
     let mut client = robot.client("control");
