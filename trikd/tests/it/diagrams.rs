@@ -187,6 +187,7 @@ fn long_variables_and_the_blocks_of_a_data_flow_program_take_turns() {
 
 #[test]
 fn each_recording_begins_with_all_that_blocks_did_since_one_was_made() {
+    const HELLO: &str = "\"caption\":\"hello\",\"reacted\":1}";
     let robot = robot(&[]);
     let begin = || {
         let mut recorder = robot.client("control");
@@ -196,12 +197,12 @@ fn each_recording_begins_with_all_that_blocks_did_since_one_was_made() {
         assert_eq!(beginning.len(), 64);
         recorder
     };
-    let has_hello = |recorder: &mut Client| {
+    let has = |recorder: &mut Client, text: &str| {
         let mut seen = String::new();
-        while seen.len() < 100_000 && !seen.contains("\"caption\":\"hello\",\"reacted\":1}") {
+        while seen.len() < 100_000 && !seen.contains(text) {
             seen += &String::from_utf8_lossy(&recorder.exactly(64));
         }
-        assert!(seen.len() < 100_000, "nothing of that block");
+        assert!(seen.len() < 100_000, "nothing of {text}");
     };
     let mut first = begin();
     let mut client = robot.client("control");
@@ -210,10 +211,15 @@ fn each_recording_begins_with_all_that_blocks_did_since_one_was_made() {
     client.send("run:go.flow");
     client.expect("info: go.flow has started");
     client.keep_alive();
-    has_hello(&mut first);
+    has(&mut first, HELLO);
     // The second one comes while the first one records.
     let mut second = begin();
-    has_hello(&mut second);
+    has(&mut second, HELLO);
+    // What is told of a new version is a new beginning.
+    upload(&mut client, "go.flow", text);
+    client.send("patch:end:go.flow");
+    client.until("info: go.flow is changed");
+    has(&mut second, "\"anew\":true,\"blocks\":[");
     client.send("stop");
     client.until("info: go.flow was stopped by a client");
 }
