@@ -422,14 +422,16 @@ fn changes(folder: &Path, daemon: &Daemon) {
     client.send(b"stop");
 }
 
+/// A part of this benchmark, with the folder of scripts and the daemon.
+type Section = fn(&Path, &Daemon);
+
 fn main() {
     let named: Vec<String> = std::env::args()
         .skip(1)
         .filter(|word| !word.starts_with('-'))
         .collect();
     let wanted = |name: &str| named.is_empty() || named.iter().any(|word| word == name);
-    let sections: [(&str, fn(&Path, &Daemon)); 2] =
-        [("changes", changes), ("flow", live::flow::run)];
+    let sections: [(&str, Section); 2] = [("changes", changes), ("flow", live::flow::run)];
     for (name, run) in sections {
         if wanted(name) {
             let folder = tempdir().expect("a folder");
