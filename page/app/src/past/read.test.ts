@@ -206,7 +206,7 @@ describe('what is refused', () => {
     const wrong = wrongOf(bytes);
     expect(wrong?.what).toBe('much');
     expect(wrong?.at).toBeGreaterThan(0);
-  });
+  }, 60_000);
 
   it('reading is given up when nobody wants it', async () => {
     expect(await read(example(), () => false)).toBeUndefined();
