@@ -25,7 +25,7 @@ const ORDERS: u32 = 60;
 /// Steps between two orders at most.
 const STEPS: usize = 30;
 /// The longest answer: four lists that are cut, each with the one item more that has filled it, and what stands beside them.
-const ANSWER_BYTES_MAX: usize = 4 * (limits::TOLD_BYTES + limits::TOLD_CHARACTERS_MAX + 4096)
+const LONGEST_ANSWER: usize = 4 * (limits::TOLD_BYTES + limits::TOLD_CHARACTERS_MAX + 4096)
     + common::TOLD_LINES_BYTES
     + 4 * common::ORDER_BYTES_MAX;
 /// An order, and what is put into it.
@@ -287,7 +287,7 @@ impl Debugged<'_> {
 /// What goes out is JSON, and no longer than anybody expects.
 fn tells(answer: &str) {
     assert!(answer.starts_with('{') && is_json(answer), "{answer}");
-    assert!(answer.len() <= ANSWER_BYTES_MAX, "{} bytes", answer.len());
+    assert!(answer.len() <= LONGEST_ANSWER, "{} bytes", answer.len());
 }
 
 /// Half of the bytes are a program, the rest orders, steps and versions; all of them are what the robot reads.
