@@ -3,6 +3,8 @@
 //! Owns what an expression is in another language. Conversions that can fail are calls of helpers, which know the words
 //! of the failure. Knows no language: its words are a table of [`super::language`].
 
+mod demands;
+mod lists;
 mod operators;
 
 use super::language::{Word, row};
@@ -13,14 +15,11 @@ use crate::limits;
 use crate::program::{Formula, Text};
 use lang_diagram::generate::row::{ATOM, fill};
 use lang_expr::reserved::Function;
-use lang_expr::tree::{Binary, Field, Id, Node, Unary};
+use lang_expr::tree::{Binary, Id, Node, Unary};
 use lang_expr::{Compat, Kind, Names, Source, Value, literal};
 use lang_text::problem::Words;
 use operators::{arithmetic, of_wholes};
 use std::rc::Rc;
-
-/// How long lists in C can become at least where an index is computed.
-const COMPUTED_ROOM: i32 = 32;
 
 /// Words that stand for a value, and how strongly they bind.
 #[derive(Clone, Debug)]
@@ -116,7 +115,16 @@ impl Writer<'_, '_> {
             let needed = self.say(Word::NeedsValue, &[self.field(field)]);
             Step::Do(self.say(Word::Ignore, &[needed]).text)
         });
-        asked.collect()
+        let mut steps: Vec<Step> = asked.collect();
+        steps.extend(self.demands(leaves_out));
+        steps
+    }
+
+    /// Whether a name is one of a token or of a variable.
+    fn is_changing(&self, name: &str) -> bool {
+        let slot = self.names.find(name);
+        let kind = slot.and_then(|slot| self.names.kind(slot));
+        self.text.own.contains(&name) || matches!(kind, None | Some(Kind::Variable))
     }
 
     fn statements(
@@ -168,7 +176,7 @@ impl Writer<'_, '_> {
                     return Err(self.refuse(table, words::no_nested_lists()));
                 };
                 self.makes_room(index);
-                let index = self.whole(index, 0)?;
+                let index = self.index(index, 0)?;
                 let field = self.target(&name);
                 let put = self.say(Word::Put, &[field.clone(), index, value]);
                 steps.push(Step::Set(field.text, put.text));
@@ -188,33 +196,6 @@ impl Writer<'_, '_> {
             | Node::Block(_) => return Err(self.refuse(target, words::no_such_text())),
         }
         Ok(None)
-    }
-
-    /// A list gets an item at an index.
-    fn makes_room(&mut self, index: Id) {
-        let room = match self.source.tree().node(index) {
-            Node::Int(text) => literal::whole(text, Compat::Fixed)
-                .to_int()
-                .saturating_add(1),
-            Node::Nil
-            | Node::Bool(_)
-            | Node::Float(_)
-            | Node::Text(_)
-            | Node::RawText(_)
-            | Node::Name(_)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Index { .. }
-            | Node::Call { .. }
-            | Node::Method { .. }
-            | Node::Table { .. }
-            | Node::Assign { .. }
-            | Node::Block(_) => COMPUTED_ROOM,
-        };
-        let room = usize::try_from(room)
-            .unwrap_or(0)
-            .min(self.plan.items_max());
-        self.plan.longest = self.plan.longest.max(room);
     }
 
     fn refuse(&self, id: Id, words: Words) -> Refused {
@@ -307,13 +288,15 @@ impl Writer<'_, '_> {
             | Node::Text(_)
             | Node::RawText(_)
             | Node::Unary(Unary::Length, _)
-            | Node::Index { .. }
             | Node::Method { .. }
             | Node::Table { .. }
             | Node::Assign { .. }
             | Node::Block(_) => {
                 let value = self.value(id, depth)?;
                 self.say(Word::Number, &[value])
+            }
+            Node::Index { table, index } => {
+                self.item(id, (table, index), Word::NumberOfItem, depth)?
             }
             Node::Name(name) => match self.constant(id) {
                 Some(number) => self.literal(&number),
@@ -486,14 +469,7 @@ impl Writer<'_, '_> {
                 let truth = self.truth(id, depth)?;
                 self.say(Word::ValueOfTruth, &[truth])
             }
-            Node::Index { table, index } => {
-                let Node::Name(name) = self.source.tree().node(table).clone() else {
-                    return Err(self.refuse(id, words::no_nested_lists()));
-                };
-                let table = self.name(id, &name)?;
-                let index = self.whole(index, depth)?;
-                self.say(Word::Item, &[table, index])
-            }
+            Node::Index { table, index } => self.item(id, (table, index), Word::Item, depth)?,
             Node::Table { fields, .. } => self.table(id, &fields, depth)?,
             Node::Method { .. } | Node::Assign { .. } | Node::Block(_) => {
                 return Err(self.refuse(id, words::no_such_text()));
@@ -519,28 +495,6 @@ impl Writer<'_, '_> {
             Some(Kind::Constant(_)) => Err(self.refuse(id, words::no_texts())),
             Some(Kind::Function(_)) => Err(self.refuse(id, words::no_such_text())),
         }
-    }
-
-    fn table(&mut self, id: Id, fields: &[Field], depth: usize) -> Result<Phrase, Refused> {
-        let limit = self.plan.items_max();
-        if fields.len() > limit {
-            return Err(self.refuse(id, words::list_too_long(limit)));
-        }
-        let mut items = Vec::with_capacity(fields.len());
-        for field in fields {
-            if field.key.is_some() {
-                return Err(self.refuse(id, words::no_such_text()));
-            }
-            if let Node::Table { .. } = self.source.tree().node(field.value) {
-                return Err(self.refuse(field.value, words::no_nested_lists()));
-            }
-            items.push(self.value(field.value, depth)?.text);
-        }
-        self.plan.longest = self.plan.longest.max(items.len());
-        Ok(Phrase::atom(super::language::list(
-            self.plan.target,
-            &items,
-        )))
     }
 
     /// What a function gives, as a number.

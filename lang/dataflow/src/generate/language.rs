@@ -49,6 +49,12 @@ pub(super) enum Word {
     Same,
     /// A value as a number; a fault if it is none.
     Number,
+    /// The same of an index, where a truth counts too.
+    NumberOfAny,
+    /// list, index: an item as a number; what the items are, the first one says
+    NumberOfItem,
+    /// A fault if it is a value that is no number.
+    Demand,
     /// A number as a whole one of 32 bits: halves go up, and what is above is cut off.
     Whole,
     /// A value as a truth.

@@ -527,7 +527,7 @@ fn what_fails_names_its_block() {
         "A Sensor {VarName=sensorA1}\nI If {condition=data > 0}\nA.OUT > I.DATA\nI.TRUE > I.DATA";
     for fault in faults(&format!("{runs}{keeps}")) {
         assert!(
-            fault.starts_with("I.DATA: a cycle without a wait"),
+            fault.starts_with("I.DATA: too many reactions in one instant"),
             "{fault}"
         );
     }

@@ -64,11 +64,24 @@ static inline struct value truthValue(int truth)
 
 static inline double number(struct state *s, struct value value)
 {
-    if (value.kind == NUMBER || value.kind == TRUTH) {
+    if (value.kind == NUMBER) {
         return value.number;
     }
-    fail(s, value.kind == UNIT ? "there is no value where a number is needed" : "a list is no number");
+    fail(s, value.kind == UNIT ? "there is no value where a number is needed"
+            : value.kind == TRUTH ? "a truth is no number" : "a list is no number");
     return 0;
+}
+
+static inline double numberOfAny(struct state *s, struct value value)
+{
+    return value.kind == TRUTH ? value.number : number(s, value);
+}
+
+static inline void demand(struct state *s, struct value value)
+{
+    if (value.kind != UNIT) {
+        number(s, value);
+    }
 }
 
 static inline double whole(double number)
@@ -200,6 +213,17 @@ static inline struct value item(struct state *s, struct value list, double at)
         made.number = list.items[(int)at];
     }
     return made;
+}
+
+/* The first item says what all of them are. */
+static inline double numberOfItem(struct state *s, struct value list, double at)
+{
+    int has_first = list.kind == LIST && list.count > 0 && list.kinds[0] != UNIT;
+    if (has_first && list.kinds[0] != NUMBER) {
+        fail(s, "a truth is no number");
+        return 0;
+    }
+    return has_first ? numberOfAny(s, item(s, list, at)) : number(s, item(s, list, at));
 }
 
 static inline void setItem(struct state *s, struct value *list, int at, struct value value)
@@ -368,7 +392,7 @@ static inline void post(struct state *s, int place, struct value token)
 static inline void count(struct state *s)
 {
     if (++s->firings > FIRINGS_MAX) {
-        fail(s, "a cycle without a wait: too many reactions");
+        fail(s, "too many reactions in one instant, as in a cycle without a wait");
     }
 }
 

@@ -8,9 +8,18 @@ local function fail(reason) error(reason, 0) end
 
 local function number(value)
   if type(value) == 'number' then return value end
+  if value == nil then fail('there is no value where a number is needed') end
+  fail(type(value) == 'boolean' and 'a truth is no number' or 'a list is no number')
+end
+
+local function numberOfAny(value)
   if value == true then return 1 end
   if value == false then return 0 end
-  fail(value == nil and 'there is no value where a number is needed' or 'a list is no number')
+  return number(value)
+end
+
+local function demand(value)
+  if value ~= nil then number(value) end
 end
 
 -- What is whole has no sign where it is 0: that is what adding 0 does.
@@ -79,12 +88,20 @@ local function same(one, other)
   end
   if one == nil or other == nil then return one == other end
   if type(one) == 'table' or type(other) == 'table' then return false end
-  return number(one) == number(other)
+  return numberOfAny(one) == numberOfAny(other)
 end
 
 local function item(list, at)
   if at < 0 then fail('an index is below 0') end
   if type(list) == 'table' then return list[at] end
+end
+
+-- The first item says what all of them are.
+local function numberOfItem(list, at)
+  local value = item(list, at)
+  if type(list) ~= 'table' or list[0] == nil then return number(value) end
+  number(list[0])
+  return numberOfAny(value)
 end
 
 local function put(list, at, value)
@@ -136,7 +153,7 @@ local function new()
 
   local function count()
     s.firings = s.firings + 1
-    if s.firings > FIRINGS_MAX then fail('a cycle without a wait: more than ' .. FIRINGS_MAX .. ' reactions') end
+    if s.firings > FIRINGS_MAX then fail('too many reactions in one instant, as in a cycle without a wait') end
   end
 
   local function stop() fail('ENODEV: the program has ended') end

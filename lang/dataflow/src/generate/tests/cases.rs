@@ -1,6 +1,6 @@
 //! Blocks that know the time, wait for several tokens, count, or are called: by hand, each against the machine.
 
-use super::{both, case, main_only};
+use super::{both, case, faults, main_only, run};
 use crate::machine::fixtures::{diagram, project};
 use crate::project::{DiagramKind, Policy};
 
@@ -195,4 +195,26 @@ fn queues_lose_what_their_edges_say() {
         edge.capacity = Some(capacity);
     }
     both(&case("queues", &project(vec![main])));
+}
+
+#[test]
+fn a_truth_of_unknown_type_is_no_number() {
+    let end = "\nM Motors {synch=false}\nA.OUT > Z.DATA1\nA.OUT > Z.DATA2\nZ.OUT > U.DATA\nU.OUT1 > F.I0\nU.OUT2 > F.I1\nF.O0 > M.M3";
+    let begin = "A Sensor {VarName=sensorA1}\nZ Zip flows\nU Unzip flows\nF Text programming {IO0=";
+    for text in [
+        "(I0 >= I1) * 20",
+        "({I0, I1} == {I0, I1}) * 1",
+        "-(not I0)",
+        "I0 % (I1 == 1)",
+        "max(I0 > 1, I1)",
+        "I0 > 0 or (I0 == 1) + 1 > 0",
+    ] {
+        let whole = format!("{begin}{text}}}{end}");
+        let (shown, why) = run(&case("truths", &main_only(&whole)));
+        assert!(shown.is_empty(), "{text}");
+        assert!(why.is_some_and(|why| why.contains("Type mismatch")));
+        for fault in faults(&whole) {
+            assert_eq!(fault, "F.I1: a truth is no number", "{text}");
+        }
+    }
 }
