@@ -76,6 +76,8 @@ fn look_at_edge(program: &Program, of: Of, to: Target, found: &mut Found) {
     };
     if of == Of::Unit && port.of.is_data() && !is_trigger {
         found.warn(place(), words::unit_here(port.name));
+    } else if (of, port.of) == (Of::Digits, Kind::Whole) {
+        found.warn(place(), words::number_as_text());
     } else if !of.fits(port.of) {
         let wanted = match port.of {
             Kind::Unit | Kind::Any => words::A_VALUE,

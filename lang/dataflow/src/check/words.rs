@@ -32,6 +32,13 @@ pub(crate) fn does_not_fit(comes: [&str; 2], wanted: [&str; 2], count: Option<u8
 }
 
 pub(crate) fn no_list_for(comes: [&str; 2], count: usize) -> Words {
+pub(crate) fn number_as_text() -> Words {
+    Words::new(
+        "a text comes here that is a number, and counts as that: write the number without quotes",
+        "сюда приходит текст, который читается как число: напишите число без кавычек",
+    )
+}
+
     Words::new(
         format!(
             "{} comes here, but its {count} variables take the items of a list: connect one, or name one variable",
