@@ -322,8 +322,14 @@ impl Formulas {
             let mut source = source.clone();
             source.reread();
             if let Err(problems) = lang_expr::analyse(&mut source, &mut names) {
+                // The version is good by itself, so these types are the reason.
+                let kept = kept_types(&source, &self.names);
                 let placed = problems.into_iter().map(|problem| Problem {
                     place: program.property_place(text.node, text.property, problem.place.position),
+                    words: match kept.is_empty() {
+                        true => problem.words,
+                        false => words::kept_types(&problem.words, &kept),
+                    },
                     ..problem
                 });
                 return Err(placed.collect());
@@ -364,6 +370,22 @@ impl Formulas {
         all.filter(|(_, name, _)| !is_own(name))
             .filter_map(|(slot, name, _)| Some((name, self.store.get(slot)?)))
     }
+}
+
+/// Variables of the project that a text names, each once, and their types.
+fn kept_types(source: &Source, names: &Names) -> Vec<(String, String)> {
+    let mut kept: Vec<(String, String)> = Vec::new();
+    for name in source.names() {
+        let slot = names.find(name);
+        let kind = slot.and_then(|slot| names.kind(slot));
+        if let (Some(slot), Some(Kind::Variable), false) = (slot, kind, is_own(name))
+            && !matches!(names.type_of(slot), Type::Any | Type::Open)
+            && kept.iter().all(|(had, _)| had != name)
+        {
+            kept.push((name.to_owned(), names.type_name(names.type_of(slot))));
+        }
+    }
+    kept
 }
 
 /// Whether a text assigns something.

@@ -118,6 +118,26 @@ pub(crate) fn queue_full(places: u16) -> Words {
     Words::new(
         format!(
             "{places} tokens wait here already, and the policy of this queue is error: the other inputs get fewer tokens"
+/// What a new version cannot do because of the types that variables have in the program that runs.
+pub(crate) fn kept_types(why: &Words, kept: &[(String, String)]) -> Words {
+    let shown = |is: &str| -> String {
+        let all = kept.iter().take(limits::LISTED_MAX);
+        let all = all.map(|(name, of)| format!("{} {is}{of}", short(name)));
+        all.collect::<Vec<_>>().join(", ")
+    };
+    let (english, russian) = (shown("is of type "), shown("имеет тип "));
+    Words::new(
+        format!(
+            "{}; variables keep the types that they have in the running program, where {english}: start the program anew, or take another variable",
+            why.english.trim_end_matches('.')
+        ),
+        format!(
+            "{}; переменные сохраняют типы, которые у них есть в работающей программе, а там {russian}: запустите программу заново или возьмите другую переменную",
+            why.russian.trim_end_matches('.')
+        ),
+    )
+}
+
         ),
         format!(
             "здесь уже ждут значений: {places}, а правило этой очереди - error: на другие входы значений приходит меньше"

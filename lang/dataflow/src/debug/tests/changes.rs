@@ -136,6 +136,23 @@ fn a_program_that_is_stopped_is_changed_where_it_stands() {
 }
 
 #[test]
+fn a_type_that_only_the_running_program_has_is_told() {
+    let halves = "B Variable {variable=q = 2.5}\nA Sensor\nF Text programming {IO0=q * 2 + 0 * I0}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
+    let (mut desk, mut robot) = (desk(halves), Robot::default());
+    runs(&mut desk, &mut robot, 0, 40);
+    let wholes = halves.replace("q = 2.5", "q = 2").replace("q * 2", "q % 7");
+    let refused = desk.patch(&version(&wholes), &mut robot);
+    let Err(NoVersion::Mistakes(problems)) = refused else {
+        panic!("{refused:?}");
+    };
+    let why = problems[0].in_locale(Locale::English).to_string();
+    assert!(
+        why.contains("Type mismatch; variables keep the types that they have in the running program, where q is of type float: start the program anew"),
+        "{why}"
+    );
+}
+
+#[test]
 fn a_version_that_gives_a_variable_another_type_is_refused() {
     let (mut desk, mut robot) = slow();
     runs(&mut desk, &mut robot, 0, 40);
@@ -143,9 +160,13 @@ fn a_version_that_gives_a_variable_another_type_is_refused() {
         .replace("n = 0; k = 2", "n = 0; k = 'two'")
         .replace("I0 * k", "I0");
     let refused = desk.patch(&version(&other), &mut robot);
+    let Err(NoVersion::Mistakes(problems)) = refused else {
+        panic!("{refused:?}");
+    };
+    let why = problems[0].in_locale(Locale::English).to_string();
     assert!(
-        matches!(refused, Err(NoVersion::Mistakes(_))),
-        "{refused:?}"
+        why.contains("mismatched types; variables keep the types that they have in the running program, where n is of type integer, k is of type integer: start"),
+        "{why}"
     );
     // A list keeps its type, whatever its first item is.
     let list =
