@@ -22,7 +22,17 @@ impl Run<'_> {
         match function {
             Function::Print => {
                 let value = self.value(self.argument(span, 0));
-                let text = self.text(&value);
+                let text = match &value {
+                    // TRIK Studio prints nothing of it.
+                    Value::List(_) if self.names.is_strict => value.brief().into(),
+                    Value::Nil
+                    | Value::Bool(_)
+                    | Value::Int(_)
+                    | Value::Float(_)
+                    | Value::Text(_)
+                    | Value::Unset
+                    | Value::List(_) => self.text(&value),
+                };
                 self.outside.print(&text);
                 value
             }
