@@ -8,8 +8,10 @@ mod edges;
 mod fed;
 mod found;
 mod givers;
+mod instant;
+mod names;
 mod rates;
-mod shape;
+pub(crate) mod shape;
 mod tokens;
 mod types;
 mod words;
@@ -31,10 +33,13 @@ pub fn check(project: &Project) -> Lowered {
     }
     let program = &lowered.program;
     let mut found = Found::default();
-    let types = types::infer(program, &mut found);
-    edges::look(program, &types, &mut found);
-    shape::look(program, &mut found);
-    rates::look(program, &mut found);
+    names::look(program, &mut found);
+    if !found.has_failed {
+        let types = types::infer(program, &mut found);
+        edges::look(program, &types, &mut found);
+        shape::look(program, &mut found);
+        rates::look(program, &mut found);
+    }
     lowered.has_failed |= found.has_failed;
     sort(&mut found.problems);
     let room = lang_text::limits::PROBLEMS_KEPT.saturating_sub(found.problems.len());

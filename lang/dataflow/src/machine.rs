@@ -28,6 +28,7 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
+use crate::check::shape::on_cycles;
 use crate::limits;
 use crate::program::{Node, NodeId, Program, Target};
 use crate::project::Policy;
@@ -37,6 +38,7 @@ use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
 use lang_diagram::ports::{Port, Sort};
 use lang_expr::Value;
+use lang_expr::limits::NAMES_MAX;
 use lang_text::problem::{Place, Problem, Words};
 use sensors::Readings;
 use state::State;
@@ -83,7 +85,7 @@ pub struct Machine {
     was_stopped: bool,
     stops: Stops,
     firings: u32,
-    /// The last blocks before the limit.
+    /// The last blocks before the limit, each as often as it has reacted.
     suspects: Vec<NodeId>,
     /// How many tokens each port has lost.
     dropped: BTreeMap<(NodeId, u8), u32>,
@@ -187,7 +189,7 @@ impl Machine {
             None => {
                 self.began = Some(now);
                 if self.formulas.has_too_many_names() {
-                    let words = words::too_many_variables();
+                    let words = words::too_many_names(NAMES_MAX);
                     return Err(self.fault_at(Place::default(), words));
                 }
                 self.tell_lacking(env);
@@ -497,23 +499,37 @@ impl Machine {
     /// Remembers who reacts near the limit.
     #[cold]
     fn suspect(&mut self, id: NodeId, env: &Env<'_>) -> Result<(), Halt> {
-        if !self.suspects.contains(&id) {
-            self.suspects.push(id);
-        }
+        self.suspects.push(id);
         if self.firings > limits::FIRINGS_MAX {
             return Err(self.runaway(env));
         }
         Ok(())
     }
 
+    /// Too many reactions in one instant: of a cycle, or of a program that has so many blocks.
     fn runaway(&self, env: &Env<'_>) -> Halt {
-        let suspects = self.suspects.iter().take(limits::NAMED_MAX);
-        let names: Vec<String> = suspects.map(|&id| env.program.node(id).label()).collect();
-        let mut problem = Problem::error(words::runaway(limits::FIRINGS_MAX, &names));
-        if let Some(&id) = self.suspects.first() {
-            problem.place = env.program.place(id);
+        let mut again: Vec<NodeId> = Vec::new();
+        for (at, id) in self.suspects.iter().enumerate() {
+            if self.suspects[..at].contains(id) && !again.contains(id) {
+                again.push(*id);
+            }
         }
-        Halt::Error(Box::new(problem))
+        // One that many others send tokens to reacts again without a cycle; a long cycle is longer than what is remembered.
+        let cycles = on_cycles(env.program);
+        let is_long = again.is_empty() && self.suspects.iter().all(|id| cycles.contains(id));
+        if is_long {
+            again.clone_from(&self.suspects);
+        }
+        again.retain(|id| cycles.contains(id));
+        let most = limits::FIRINGS_MAX;
+        let Some(&first) = again.first() else {
+            let last = self.suspects.last();
+            let place = last.map(|&id| env.program.place(id)).unwrap_or_default();
+            return self.fault_at(place, words::busy_instant(most));
+        };
+        let named = again.iter().take(limits::NAMED_MAX);
+        let names: Vec<String> = named.map(|&id| env.program.node(id).label()).collect();
+        self.fault(first, words::runaway(most, &names), env)
     }
 
     /// Sets a timer of a node instead of the one that it may have.

@@ -3,7 +3,7 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 use crate::blocks::{Direction, Row};
-use crate::limits::{LISTED_MAX, REPEATED_MAX};
+use crate::limits::{self, LISTED_MAX, REPEATED_MAX};
 use lang_text::near;
 use lang_text::problem::{Locale, Words};
 
@@ -267,10 +267,47 @@ pub(crate) fn too_much_text(most: usize) -> Words {
     let most = most >> 20;
     Words::new(
         format!(
-            "the properties of the program have more than {most} MiB of text, those of called subprograms counted for each call"
+            "the program has more than {most} MiB of text in names and properties; each call of a subprogram has a copy of its own, so make its texts shorter or the calls fewer"
         ),
         format!(
-            "в свойствах программы больше {most} МиБ текста, считая подпрограммы при каждом вызове"
+            "в именах и свойствах программы больше {most} МиБ текста; у каждого вызова подпрограммы своя копия, поэтому сократите её тексты или число вызовов"
+        ),
+    )
+}
+
+pub(crate) fn too_large_token() -> Words {
+    Words::new(
+        format!(
+            "this value is too large for a token: a list has at most {} items, a text at most {} bytes",
+            limits::ITEMS_MAX,
+            limits::TEXT_BYTES_MAX
+        ),
+        format!(
+            "это значение слишком велико: в списке не больше {} элементов, в тексте не больше {} байт",
+            limits::ITEMS_MAX,
+            limits::TEXT_BYTES_MAX
+        ),
+    )
+}
+
+pub(crate) fn busy_instant(most: u32) -> Words {
+    Words::new(
+        format!(
+            "more than {most} reactions of blocks come in one instant, which is all that there is room for: let some of them wait"
+        ),
+        format!(
+            "в одно мгновение блоки срабатывают больше {most} раз, а больше нельзя: пусть часть из них подождёт"
+        ),
+    )
+}
+
+pub(crate) fn too_many_names(most: usize) -> Words {
+    Words::new(
+        format!(
+            "the program has more than {most} names: its variables, sensors and functions, and for each block, in each call, the inputs that its expressions read (`data`, `I0`); join blocks, or read less in them"
+        ),
+        format!(
+            "в программе больше {most} имён: это переменные, датчики, функции и для каждого блока при каждом вызове входы, которые читают его выражения (`data`, `I0`); объедините блоки или читайте в них меньше"
         ),
     )
 }

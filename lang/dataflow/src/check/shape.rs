@@ -3,7 +3,7 @@
 //! Owns what only the graph shows.
 
 use super::found::{Found, port_place};
-use super::words;
+use super::{instant, words};
 use crate::blocks::Direction;
 use crate::limits;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};
@@ -12,7 +12,13 @@ use std::collections::{BTreeMap, HashSet};
 
 pub(super) fn look(program: &Program, found: &mut Found) {
     let graph = Graph::new(program);
-    cycles(program, &graph, found);
+    let cycles = cycles(program, &graph);
+    if cycles.is_empty() {
+        instant::look(program, found);
+    }
+    for cycle in cycles {
+        tell_cycle(program, cycle, found);
+    }
     dead(program, &graph, found);
     for id in 0..program.nodes.len() as NodeId {
         node(program, id, found);
@@ -119,13 +125,24 @@ fn delays(op: &Op) -> bool {
     }
 }
 
+/// Blocks to which tokens can come back within the instant in which they left.
+pub(crate) fn on_cycles(program: &Program) -> HashSet<NodeId> {
+    let cycles = cycles(program, &Graph::new(program));
+    cycles
+        .into_iter()
+        .flatten()
+        .map(|id| id as NodeId)
+        .collect()
+}
+
 /// Strongly connected components without a node that delays (Tarjan 1972, without recursion).
-fn cycles(program: &Program, graph: &Graph, found: &mut Found) {
+fn cycles(program: &Program, graph: &Graph) -> Vec<Vec<usize>> {
     const UNSEEN: u32 = u32::MAX;
     let count = program.nodes.len();
     let (mut order, mut low) = (vec![UNSEEN; count], vec![0u32; count]);
     let (mut stack, mut on_stack) = (Vec::new(), vec![false; count]);
     let mut clock = 0;
+    let mut cycles = Vec::new();
     for root in 0..count {
         let mut calls: Vec<(usize, usize)> = Vec::new();
         if order[root] == UNSEEN && !delays(&program.nodes[root].op) {
@@ -161,11 +178,12 @@ fn cycles(program: &Program, graph: &Graph, found: &mut Found) {
                 component.iter().for_each(|&one| on_stack[one] = false);
                 let is_cycle = component.len() > 1 || graph.next[id].contains(&(id as NodeId));
                 if is_cycle {
-                    tell_cycle(program, component, found);
+                    cycles.push(component);
                 }
             }
         }
     }
+    cycles
 }
 
 fn tell_cycle(program: &Program, mut component: Vec<usize>, found: &mut Found) {

@@ -335,7 +335,7 @@ fn an_error_is_never_lost_among_warnings() {
     assert!(
         checked.problems[0]
             .to_string()
-            .contains("more than 4 MiB of text")
+            .contains("more than 4 MiB of text in names and properties; each call of a subprogram has a copy of its own")
     );
 }
 

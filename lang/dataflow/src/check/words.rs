@@ -2,6 +2,7 @@
 //!
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
+pub(crate) use crate::words::busy_instant;
 use crate::words::short;
 use lang_text::problem::Words;
 
@@ -31,7 +32,6 @@ pub(crate) fn does_not_fit(comes: [&str; 2], wanted: [&str; 2], count: Option<u8
     )
 }
 
-pub(crate) fn no_list_for(comes: [&str; 2], count: usize) -> Words {
 pub(crate) fn number_as_text() -> Words {
     Words::new(
         "a text comes here that is a number, and counts as that: write the number without quotes",
@@ -39,6 +39,7 @@ pub(crate) fn number_as_text() -> Words {
     )
 }
 
+pub(crate) fn no_list_for(comes: [&str; 2], count: usize) -> Words {
     Words::new(
         format!(
             "{} comes here, but its {count} variables take the items of a list: connect one, or name one variable",

@@ -16,6 +16,7 @@ use crate::program::{Flow, Instance, Node, NodeId, Op, Program, Queue, Target};
 use crate::project::Project;
 use lang_diagram::brick::Brick;
 use lang_expr::Value;
+use lang_expr::limits::NAMES_MAX;
 use lang_text::problem::{Problem, Severity};
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
@@ -273,7 +274,7 @@ impl Machine {
     fn take_variables(&mut self, old: &Self, kept: &Kept) -> Result<(), Problem> {
         self.formulas = Formulas::after(&self.program, &old.formulas);
         if self.formulas.has_too_many_names() {
-            return Err(Problem::error(words::too_many_variables()));
+            return Err(Problem::error(words::too_many_names(NAMES_MAX)));
         }
         for (id, before) in (0..).zip(&kept.old_of) {
             let Some(before) = *before else {

@@ -3,7 +3,9 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 use crate::limits;
-pub(crate) use crate::words::{bad_width, loop_step, no_choice};
+pub(crate) use crate::words::{
+    bad_width, busy_instant, loop_step, no_choice, too_large_token, too_many_names,
+};
 use crate::words::{list, short};
 use lang_expr::Value;
 use lang_text::near;
@@ -74,21 +76,6 @@ pub(crate) fn list_short(found: usize, wanted: usize) -> Words {
     Words::new(
         format!("a list of at least {wanted} items is needed, this one has {found}"),
         format!("нужен список хотя бы из {wanted} элементов, а в этом: {found}"),
-    )
-}
-
-pub(crate) fn too_large_token() -> Words {
-    Words::new(
-        format!(
-            "this value is too large for a token: a list has at most {} items, a text at most {} bytes",
-            limits::ITEMS_MAX,
-            limits::TEXT_BYTES_MAX
-        ),
-        format!(
-            "это значение слишком велико: в списке не больше {} элементов, в тексте не больше {} байт",
-            limits::ITEMS_MAX,
-            limits::TEXT_BYTES_MAX
-        ),
     )
 }
 

@@ -135,5 +135,8 @@ fn many_blocks_that_give_one_variable_cost_what_they_are() {
         text += &format!("V{number} Variable {{variable=x = x + 1}}\n");
     }
     // Looking at each giver for each reader would be half a milliard looks in each pass.
-    assert_eq!(told(&text), Vec::<String>::new());
+    only(
+        &text,
+        "warning: main: Variable 'V10000': more than 10000 reactions",
+    );
 }

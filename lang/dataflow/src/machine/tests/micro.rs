@@ -303,6 +303,66 @@ fn a_cycle_within_an_instant_ends_or_is_an_error() {
 }
 
 #[test]
+fn a_list_is_printed_with_its_items() {
+    let text =
+        "V Value generator {varValue=[1, 2.5]}\nF Text programming {IO0=print(I0)}\nV.OUT > F.I0";
+    let main = diagram("main", DiagramKind::Main, text);
+    let mut robot = Script::default();
+    run(&project(vec![main]), 10, &mut robot, |_, _| {});
+    assert!(
+        robot.commands.iter().any(|told| told.contains("[1, 2.5]")),
+        "{:?}",
+        robot.commands
+    );
+}
+
+/// What ends a program.
+fn last_words(main: crate::project::Diagram) -> String {
+    let (lines, _) = run(&project(vec![main]), 10, &mut Script::default(), |_, _| {});
+    let error = lines.iter().find_map(|line| line.split("error: ").nth(1));
+    error.unwrap_or_default().to_owned()
+}
+
+#[test]
+fn many_reactions_without_a_cycle_are_no_cycle() {
+    use crate::project::End;
+    // All these send to one block, which reacts again and again.
+    let mut text = String::from("V Value generator {varValue=1}\nS Say\n");
+    for at in 0..5100 {
+        text.push_str(&format!("b{at} Text programming {{IO0=1}}\n"));
+    }
+    text.push_str("b0.O0 > S.DATA\n");
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    let first = main.edges[0].clone();
+    for block in 3..5102 {
+        let mut edge = first.clone();
+        edge.from = edge.from.map(|end| End { block, ..end });
+        main.edges.push(edge);
+    }
+    assert_eq!(
+        last_words(main),
+        "main: Say 'S': more than 10000 reactions of blocks come in one instant, which is all that there is room for: let some of them wait"
+    );
+}
+
+#[test]
+fn a_cycle_of_many_blocks_is_a_cycle() {
+    let mut text = String::from("V Value generator {varValue=1}\n");
+    for at in 0..100 {
+        text.push_str(&format!("b{at} Text programming {{IO0=I0}}\n"));
+    }
+    text.push_str("V.OUT > b0.I0\nb99.O0 > b0.I0\n");
+    for at in 1..100 {
+        text.push_str(&format!("b{}.O0 > b{at}.I0\n", at - 1));
+    }
+    let error = last_words(diagram("main", DiagramKind::Main, &text));
+    assert!(
+        error.contains("10000 times within one instant without an end (Text"),
+        "{error}"
+    );
+}
+
+#[test]
 fn each_call_has_its_own_state() {
     let inner = diagram(
         "gate",

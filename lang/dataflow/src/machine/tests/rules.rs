@@ -504,7 +504,7 @@ fn too_many_names_are_told_before_anything_moves() {
         main.edges.push(edge);
     }
     let (lines, status) = run(&project(vec![main]), 10, &mut Script::default(), |_, _| {});
-    assert!(lines[0].contains("too many variables"), "{lines:?}");
+    assert!(lines[0].contains("more than 4096 names"), "{lines:?}");
     assert!(matches!(
         status,
         Status::Ended {
