@@ -200,6 +200,13 @@ pub(crate) fn twin_edge() -> Words {
 
 pub(crate) fn no_port(number: i32, count: usize) -> Words {
     let last = count.saturating_sub(1);
+    // What is beyond all was not that number in the save.
+    if number == i32::MAX || number == i32::MIN {
+        return Words::new(
+            format!("it has no port of the number that the edge says: its ports are 0 to {last}"),
+            format!("у него нет порта с номером, который назван в линии: порты от 0 до {last}"),
+        );
+    }
     Words::new(
         format!("it has no port {number}: its ports are 0 to {last}"),
         format!("у него нет порта {number}: порты от 0 до {last}"),
@@ -352,6 +359,23 @@ pub(crate) fn no_number(text: &str) -> Words {
             short(text)
         ),
         format!("'{}' не число, а это свойство не вычисляется", short(text)),
+    )
+}
+
+pub(crate) fn number_too_large(text: &str) -> Words {
+    Words::new(
+        format!(
+            "{} is beyond the numbers that this property takes: -{} to {}",
+            short(text),
+            i32::MAX,
+            i32::MAX
+        ),
+        format!(
+            "{} вне чисел, которые берёт это свойство: от -{} до {}",
+            short(text),
+            i32::MAX,
+            i32::MAX
+        ),
     )
 }
 

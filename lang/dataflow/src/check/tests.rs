@@ -1,5 +1,6 @@
 //! What is found before anything runs.
 
+mod limits;
 mod variables;
 
 use super::*;
@@ -85,6 +86,10 @@ fn blocks_ports_and_properties_are_looked_at() {
             "error: main: Sensor 'A': it has no port 7: its ports are 0 to 1",
         ),
         (-5, "error: main: Sensor 'A': it has no port -5"),
+        (
+            i32::MAX,
+            "error: main: Sensor 'A': it has no port of the number that the edge says: its ports are 0 to 1",
+        ),
         (
             0,
             "error: main: Sensor 'A': an edge begins at CF_IN, which is an input",

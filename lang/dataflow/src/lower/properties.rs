@@ -4,6 +4,7 @@
 
 use super::{At, Lowering, instance_is_first, shared};
 use crate::blocks::{Content, Does, EVALUATE, SYNCHRONIZED, Shape};
+use crate::machine::values;
 use crate::program::{Act, Camera, Flow, Formula, Op, Read, Source, Text, Words as Said};
 use crate::project::Block;
 use crate::sensors;
@@ -43,7 +44,7 @@ impl<'a> Lowering<'a> {
             Does::Call => Flow::Call(0).into(),
             Does::InPort => self.port_of_call(at, Flow::InPort),
             Does::OutPort => self.port_of_call(at, Flow::OutPort(None)),
-            Does::Value => Flow::Constant(constant(at.block.text("varValue"))).into(),
+            Does::Value => self.constant(at).into(),
             Does::Variable => self.variable(at).into(),
             Does::Random => self.random(at).into(),
             Does::Filter => self.filter(at).into(),
@@ -108,10 +109,20 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    /// A constant that is a token each time: as large as one may be.
+    fn constant(&mut self, at: At<'a>) -> Flow {
+        let value = constant(at.block.text("varValue"));
+        if !values::fits(&value) {
+            self.bad(at, "varValue", words::too_large_token());
+        }
+        Flow::Constant(value)
+    }
+
     fn count(&mut self, at: At<'a>) -> Flow {
         let bounds = LOOP.map(|name| self.number(at, name));
-        let is_number = at.block.text(LOOP[2]).trim().parse::<f64>().is_ok();
-        if bounds[2] == 0 && is_number && at.diagram.enters_port(at.block, "STEP").is_none() {
+        let step = at.block.text(LOOP[2]).trim().parse::<f64>();
+        let is_still = step.is_ok_and(|step| step.round() == 0.0);
+        if is_still && at.diagram.enters_port(at.block, "STEP").is_none() {
             self.bad(at, LOOP[2], words::loop_step());
         }
         Flow::Loop {
@@ -280,17 +291,16 @@ impl<'a> Lowering<'a> {
     /// A whole number; a float is rounded, halves away from zero.
     fn number(&mut self, at: At<'a>, name: &str) -> i32 {
         let text = at.block.text(name).trim();
-        let number: Option<f64> = text.parse().ok().filter(|number: &f64| number.is_finite());
-        let whole = number
-            .map(f64::round)
-            .filter(|number| number.abs() <= f64::from(i32::MAX));
-        match whole {
-            Some(whole) => whole as i32,
-            None => {
-                self.bad(at, name, words::no_number(text));
-                0
-            }
-        }
+        // Words for what is no number are none here.
+        let is_written = text.contains(|c: char| c.is_ascii_digit());
+        let number: Option<f64> = text.parse().ok().filter(|_| is_written);
+        let words = match number.map(f64::round) {
+            Some(whole) if whole.abs() <= f64::from(i32::MAX) => return whole as i32,
+            Some(_) => words::number_too_large(text),
+            None => words::no_number(text),
+        };
+        self.bad(at, name, words);
+        0
     }
 
     /// The time of a block that works again and again: it must be above 0.

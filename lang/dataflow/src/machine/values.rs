@@ -24,8 +24,10 @@ pub fn whole(value: &Value) -> Result<i32, Words> {
     // Also false for not-a-number.
     if rounded.abs() <= f64::from(i32::MAX) {
         Ok(rounded as i32)
-    } else {
+    } else if rounded.is_nan() {
         Err(words::no_whole(value))
+    } else {
+        Err(words::too_large(value))
     }
 }
 

@@ -44,6 +44,23 @@ pub(crate) fn no_whole(value: &Value) -> Words {
     )
 }
 
+pub(crate) fn too_large(value: &Value) -> Words {
+    Words::new(
+        format!(
+            "{} is too large: whole numbers are from -{} to {}",
+            what(value),
+            i32::MAX,
+            i32::MAX
+        ),
+        format!(
+            "{} слишком велико: целые числа - от -{} до {}",
+            what(value),
+            i32::MAX,
+            i32::MAX
+        ),
+    )
+}
+
 pub(crate) fn no_truth(value: &Value) -> Words {
     Words::new(
         format!("{} is neither true nor false", what(value)),
@@ -101,10 +118,6 @@ pub(crate) fn too_many_variables() -> Words {
     )
 }
 
-pub(crate) fn queue_full(places: u16) -> Words {
-    Words::new(
-        format!(
-            "{places} tokens wait here already, and the policy of this queue is error: the other inputs get fewer tokens"
 /// What a new version cannot do because of the types that variables have in the program that runs.
 pub(crate) fn kept_types(why: &Words, kept: &[(String, String)]) -> Words {
     let shown = |is: &str| -> String {
@@ -125,6 +138,10 @@ pub(crate) fn kept_types(why: &Words, kept: &[(String, String)]) -> Words {
     )
 }
 
+pub(crate) fn queue_full(places: u16) -> Words {
+    Words::new(
+        format!(
+            "{places} tokens wait here already, and the policy of this queue is error: the other inputs get fewer tokens"
         ),
         format!(
             "здесь уже ждут значений: {places}, а правило этой очереди - error: на другие входы значений приходит меньше"

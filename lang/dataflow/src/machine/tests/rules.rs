@@ -70,7 +70,11 @@ fn what_is_no_number_moves_no_motor() {
         ("fast", "'M3': fast is not a whole number"),
         ("[1, 2]", "'M3': [1, 2] is not a whole number"),
         ("true", "'M3': true is not a whole number"),
-        ("1e300", "is not a whole number"),
+        (
+            "1e300",
+            "is too large: whole numbers are from -2147483647 to 2147483647",
+        ),
+        ("2147483648", "'M3': 2147483648 is too large"),
     ] {
         let text = format!("V Value generator {{varValue={value}}}\nM Motors\nV.OUT > M.M3");
         let error = error_of(&text);

@@ -1,0 +1,136 @@
+//! How large a program may be, and what is said of one that is larger.
+
+use super::*;
+use crate::project::End;
+use std::fmt::Write;
+
+/// Blocks `b0`, `b1` and so on, all alike.
+fn blocks(count: usize, what: &str) -> String {
+    let mut text = String::new();
+    for at in 0..count {
+        let _ = writeln!(text, "b{at} {what}");
+    }
+    text
+}
+
+/// A chain of so many blocks `Say`, each of which starts the next one.
+fn chain(count: usize) -> crate::project::Diagram {
+    let text = blocks(count, "Say {text=a}") + "b0.CF_OUT > b1.CF_IN";
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    let first = main.edges[0].clone();
+    for at in 1..count - 1 {
+        let mut edge = first.clone();
+        edge.id = format!("qrm:/edge/{at}");
+        edge.from = edge.from.map(|end| End { block: at, ..end });
+        edge.to = edge.to.map(|end| End {
+            block: at + 1,
+            ..end
+        });
+        main.edges.push(edge);
+    }
+    main
+}
+
+#[test]
+fn a_program_with_too_many_names_is_told_before_it_runs() {
+    let mut text = blocks(3000, "If {condition=data > 1}") + "V Value generator {varValue=1}\n";
+    for at in 0..3000 {
+        let _ = writeln!(text, "V.OUT > b{at}.DATA");
+    }
+    let main = diagram("main", DiagramKind::Main, &text);
+    let told = told_of(&project(vec![main]));
+    assert!(told.iter().all(|one| !one.starts_with("error")), "{told:?}");
+    let mut text = blocks(4000, "If {condition=data > 1}") + "V Value generator {varValue=1}\n";
+    for at in 0..4000 {
+        let _ = writeln!(text, "V.OUT > b{at}.DATA");
+    }
+    let main = diagram("main", DiagramKind::Main, &text);
+    let told = told_of(&project(vec![main]));
+    assert!(
+        told[0].starts_with("error: main: If 'b3")
+            && told[0].contains("the program has more than 4096 names"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn names_of_variables_count_too() {
+    let statements: Vec<String> = (0..4200).map(|at| format!("v{at} = 1")).collect();
+    let told = told(&format!(
+        "V Variable {{variable={}}}",
+        statements.join("; ")
+    ));
+    assert!(
+        told[0].starts_with("error: main: Variable 'V': the program has more than 4096 names"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn a_long_chain_in_one_instant_is_told_and_is_no_cycle() {
+    assert_eq!(told_of(&project(vec![chain(10_000)])), Vec::<String>::new());
+    assert_eq!(
+        told_of(&project(vec![chain(10_001)])),
+        [
+            "warning: main: Say 'b10000': more than 10000 reactions of blocks come in one instant, which is all that there is room for: let some of them wait"
+        ]
+    );
+}
+
+#[test]
+fn a_constant_is_a_token_and_no_longer_than_one() {
+    let list = |items: usize| {
+        let items = vec!["1"; items].join(",");
+        format!(
+            "V Value generator {{varValue=[{items}]}}\nL Text programming {{IO0=#I0}}\nV.OUT > L.I0"
+        )
+    };
+    let errors = |text: &str| -> Vec<String> {
+        let told = told(text).into_iter();
+        told.filter(|one| one.starts_with("error")).collect()
+    };
+    assert_eq!(errors(&list(4096)), Vec::<String>::new());
+    assert_eq!(
+        errors(&list(4097)),
+        [
+            "error: main: Value generator 'V': 'data': this value is too large for a token: a list has at most 4096 items, a text at most 65536 bytes"
+        ]
+    );
+}
+
+#[test]
+fn a_text_that_is_a_number_is_told_where_a_number_is_wanted() {
+    for gives in [
+        "V Value generator {varValue='50'}\nM Motors\nV.OUT > M.M3",
+        "V Text programming {IO0=\"50\"}\nM Motors\nV.O0 > M.M3",
+    ] {
+        only(
+            gives,
+            "warning: main: Motors 'M': 'M3': a text comes here that is a number, and counts as that",
+        );
+    }
+    only(
+        "V Text programming {IO0=\"fast\"}\nM Motors\nV.O0 > M.M3",
+        "error: main: Motors 'M': 'M3': a text comes here, but a whole number is needed",
+    );
+}
+
+#[test]
+fn numbers_beyond_what_a_property_takes_are_numbers() {
+    for number in ["-2147483648", "2147483648", "1e300", "1e400"] {
+        only(
+            &format!("L Loop {{start_border={number}}}\nS Say\nL.OUT > S.DATA"),
+            &format!(
+                "error: main: Loop 'L': 'start_index': {number} is beyond the numbers that this property takes: -2147483647 to 2147483647"
+            ),
+        );
+    }
+    only(
+        "L Loop {increment=1e300}\nS Say\nL.OUT > S.DATA",
+        "error: main: Loop 'L': 'increment_step': 1e300 is beyond",
+    );
+    only(
+        "L Loop {end_border=inf}\nS Say\nL.OUT > S.DATA",
+        "error: main: Loop 'L': 'border': 'inf' is not a number, and",
+    );
+}
