@@ -352,7 +352,34 @@ impl<'a> Lowering<'a> {
                 node.queues = queues.into_iter().map(or_usual).collect();
             }
         }
+        if instance_is_first(instance, &self.chains, &self.program) {
+            self.warn_of_idle_queues(diagram, first);
+        }
         self.starts(instance, first);
+    }
+
+    /// Edges that say of a queue what has no effect: their port has none, or another number of places counts.
+    fn warn_of_idle_queues(&mut self, diagram: &Diagram, first: NodeId) {
+        for edge in &diagram.edges {
+            let Some(to) = edge.to else {
+                continue;
+            };
+            if edge.policy.is_none() && edge.capacity.is_none() {
+                continue;
+            }
+            let node = self.program.node(first + to.block as NodeId);
+            let has_queue = node.waits() && node.data & (1 << to.port) != 0;
+            let places = edge.capacity.map(usize::from);
+            let words = match places {
+                _ if !has_queue => words::no_queue(node.port_name(to.port as u8)),
+                Some(0) => words::other_capacity(0, 1),
+                Some(places) if places > limits::QUEUE_MAX => {
+                    words::other_capacity(places, limits::QUEUE_MAX)
+                }
+                Some(_) | None => continue,
+            };
+            self.warn(edge_place(diagram, edge), words);
+        }
     }
 
     /// Blocks without incoming edges that a unit starts.

@@ -3,7 +3,7 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 use crate::blocks::{Direction, Row};
-use crate::limits::{self, LISTED_MAX, REPEATED_MAX};
+use crate::limits::{self, LISTED_MAX, QUEUE_MAX, REPEATED_MAX};
 use lang_text::near;
 use lang_text::problem::{Locale, Words};
 
@@ -323,6 +323,40 @@ pub(crate) fn queues_differ() -> Words {
     Words::new(
         "edges that end at one port must agree on its queue: give them the same Policy and Capacity",
         "линии к одному порту должны одинаково описывать его очередь: задайте им одни и те же Policy и Capacity",
+    )
+}
+
+pub(crate) fn no_queue(port: &str) -> Words {
+    Words::new(
+        format!(
+            "what this edge says of a queue has no effect, because {port} waits for no other input: leave it out"
+        ),
+        format!(
+            "сказанное этой линией об очереди не действует, потому что {port} не ждёт других входов: уберите это"
+        ),
+    )
+}
+
+pub(crate) fn other_capacity(places: usize, counts: usize) -> Words {
+    Words::new(
+        format!(
+            "a queue of {places} places counts as {counts}: write a number from 1 to {QUEUE_MAX}"
+        ),
+        format!(
+            "очередь из {places} мест считается за {counts}: напишите число от 1 до {QUEUE_MAX}"
+        ),
+    )
+}
+
+pub(crate) fn not_chosen(runs: &str) -> Words {
+    let runs = short(runs);
+    Words::new(
+        format!(
+            "it is not run, because '{runs}' is: in a program as text, write `run` after the name of the one that has to run; in a save the first one counts"
+        ),
+        format!(
+            "она не запускается, потому что запускается '{runs}': в программе-тексте напишите `run` после имени той, что нужна; в сохранении считается первая"
+        ),
     )
 }
 

@@ -1,5 +1,6 @@
 //! What is found before anything runs.
 
+mod beginners;
 mod limits;
 mod variables;
 
@@ -366,6 +367,7 @@ fn diagrams_that_are_not_run_are_looked_at_and_forbid_nothing() {
         "warning: lonely: Text programming 'F': 'IO0', 1:",
         "warning: deep: nothing that runs calls it",
         "warning: deep: Wait and send 'W': 'time': 'soon' is not a number",
+        "warning: other: it is not run, because 'main' is: in a program as text, write `run` after the name",
         "warning: other: Led 'L': 'color:': 'blue'",
     ];
     assert_eq!(found.len(), wanted.len(), "{found:#?}");

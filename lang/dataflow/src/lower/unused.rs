@@ -21,20 +21,23 @@ pub(super) fn look(project: &Project, lowered: &mut Lowered) {
     if reached.iter().all(|is_reached| *is_reached) {
         return;
     }
+    let runs = project.diagrams.get(main).map_or("", |one| &one.name);
     let mut aside = Lowering::new(project);
     let kit = aside.program.kit;
     for (at, diagram) in project.diagrams.iter().enumerate() {
         if reached[at] {
             continue;
         }
-        if diagram.kind == DiagramKind::Subprogram {
-            let place = Place {
-                diagram: Some(diagram.name.clone()),
-                ..Place::default()
-            };
-            let problem = Problem::warning(words::never_called());
-            keep(&mut lowered.problems, Problem { place, ..problem });
-        }
+        let words = match diagram.kind {
+            DiagramKind::Subprogram => words::never_called(),
+            DiagramKind::Main => words::not_chosen(runs),
+        };
+        let place = Place {
+            diagram: Some(diagram.name.clone()),
+            ..Place::default()
+        };
+        let problem = Problem::warning(words);
+        keep(&mut lowered.problems, Problem { place, ..problem });
         aside.program = Program {
             kit,
             ..Program::default()
