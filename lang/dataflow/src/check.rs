@@ -3,6 +3,8 @@
 //! Owns the checks that look at several blocks at once; `lower` has those of one block with its edges. Each block is told
 //! of once, however many instances it has. Knows no time.
 
+mod arrivals;
+mod components;
 mod conditions;
 mod edges;
 mod fed;
@@ -12,15 +14,18 @@ mod instant;
 mod names;
 mod rates;
 pub(crate) mod shape;
+mod silent;
 mod tokens;
 mod types;
 mod words;
+mod writers;
 
 #[cfg(test)]
 mod tests;
 
 use crate::lower::{Lowered, lower};
 use crate::project::Project;
+use arrivals::Arrivals;
 use found::Found;
 use lang_text::problem::{Problem, keep};
 
@@ -37,7 +42,9 @@ pub fn check(project: &Project) -> Lowered {
     if !found.has_failed {
         let types = types::infer(program, &mut found);
         edges::look(program, &types, &mut found);
-        shape::look(program, &mut found);
+        let arrivals = Arrivals::of(program);
+        shape::look(program, &arrivals, &mut found);
+        silent::look(program, &arrivals, &mut found);
         rates::look(program, &mut found);
     }
     lowered.has_failed |= found.has_failed;

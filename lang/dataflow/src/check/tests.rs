@@ -194,7 +194,7 @@ fn tokens_fit_their_ports() {
         "error: main: Zip flows 'Z': 'DATA2': this input has no edge",
     );
     assert_eq!(
-        told("V Value generator {varValue=7}\nM Motors\nV.OUT > M.M3"),
+        told("V Value generator {varValue=7}\nM Servo motors\nV.OUT > M.S3"),
         Vec::<String>::new()
     );
 }
@@ -214,7 +214,7 @@ fn cycles_dead_blocks_and_unused_values_are_told() {
     let told = told("A Say\nB Say\nA.CF_OUT > B.CF_IN\nB.CF_OUT > A.CF_IN");
     assert!(
         told.iter()
-            .any(|one| one.contains("Say 'A': nothing starts it")),
+            .any(|one| one.contains("Say 'A': 'CF_IN': nothing starts it")),
         "{told:?}"
     );
     only(
@@ -270,7 +270,7 @@ fn lists_and_what_functions_give_are_known_along_the_way() {
         "G Gamepad\nI If {condition=data[0] > 1}\nS Say\nG.PAD > I.DATA\nI.TRUE > S.CF_IN",
         "R Read file\nM Motors\nR.OUT > M.M3",
         "A Sensor\nF Text programming {IO0=I0 / 2}\nG Text programming {IO0=I0 + 1}\nM Motors\nA.OUT > F.I0\nF.O0 > G.I0\nG.O0 > M.M3",
-        "V Value generator {varValue=[1, 2]}\nF Text programming {IO0=I0[1]}\nM Motors\nV.OUT > F.I0\nF.O0 > M.M3",
+        "V Value generator {varValue=[1, 2]}\nF Text programming {IO0=I0[1]}\nM Servo motors\nV.OUT > F.I0\nF.O0 > M.S3",
     ] {
         assert_eq!(told(good), Vec::<String>::new(), "{good}");
     }

@@ -151,10 +151,111 @@ pub(crate) fn cycle(blocks: &[String], count: usize) -> Words {
     )
 }
 
-pub(crate) fn dead() -> Words {
+fn ring(blocks: &[String], count: usize) -> String {
+    let more = if count > blocks.len() { ", ..." } else { "" };
+    format!("{}{more}", blocks.join(", "))
+}
+
+pub(crate) fn dead_ring(blocks: &[String], count: usize) -> Words {
+    let names = ring(blocks, count);
     Words::new(
-        "nothing starts it: no token comes here from a block that has no incoming edges",
-        "ничто его не запускает: сюда не приходит ничего от блоков без входящих линий",
+        format!(
+            "nothing starts it: these blocks only lead to each other ({names}), and a block into which an edge leads does not begin by itself; let a block without incoming edges, such as a Value generator, lead here as well"
+        ),
+        format!(
+            "ничто его не запускает: эти блоки ведут только друг к другу ({names}), а блок, к которому ведёт линия, сам не начинает; проведите сюда ещё линию от блока без входящих линий, например от значения"
+        ),
+    )
+}
+
+pub(crate) fn waiting_ring(port: &str, blocks: &[String], count: usize) -> Words {
+    let names = ring(blocks, count);
+    Words::new(
+        format!(
+            "no token ever comes to {port}, because what leads here waits for it ({names}): let a block without incoming edges, such as a Value generator, give {port} its first token"
+        ),
+        format!(
+            "в {port} никогда ничего не придёт, потому что то, что сюда ведёт, само этого ждёт ({names}): пусть первое значение в {port} даст блок без входящих линий, например значение"
+        ),
+    )
+}
+
+pub(crate) fn only_parameters(starts: &[&str]) -> Words {
+    Words::new(
+        format!(
+            "nothing starts it, because only parameters of it are connected: lead an edge to {}",
+            starts.join(" or ")
+        ),
+        format!(
+            "ничто его не запускает, потому что присоединены только параметры: проведите линию к {}",
+            starts.join(" или ")
+        ),
+    )
+}
+
+pub(crate) fn empty_text(port: &str, property: &str) -> Words {
+    Words::new(
+        format!(
+            "nothing ever comes from {port}, because {property} is empty: write it, or draw the edge from another output"
+        ),
+        format!(
+            "из {port} никогда ничего не выходит, потому что {property} пусто: заполните его или проведите линию от другого выхода"
+        ),
+    )
+}
+
+pub(crate) fn own_input(port: &str, input: &str) -> Words {
+    Words::new(
+        format!(
+            "nothing ever comes from {port}, because it is computed when a token comes to {input}, to which no edge leads: connect {input}"
+        ),
+        format!(
+            "из {port} никогда ничего не выходит, потому что он вычисляется, когда значение приходит в {input}, а туда ничего не ведёт: присоедините {input}"
+        ),
+    )
+}
+
+pub(crate) fn no_out_port(port: &str, name: &str) -> Words {
+    let name = short(name);
+    Words::new(
+        format!(
+            "nothing ever comes from {port}, because the subprogram '{name}' has no output port {port}: put one in, or draw the edge from another output"
+        ),
+        format!(
+            "из {port} никогда ничего не выходит, потому что в подпрограмме '{name}' нет выхода {port}: поставьте его или проведите линию от другого выхода"
+        ),
+    )
+}
+
+pub(crate) fn nothing_held() -> Words {
+    Words::new(
+        "nothing ever comes from OUT, where only what came to DATA leaves: draw the edge from CF_OUT, or connect DATA",
+        "из OUT никогда ничего не выходит, потому что оттуда уходит только пришедшее в DATA: проведите линию от CF_OUT или присоедините DATA",
+    )
+}
+
+pub(crate) fn over_at_once() -> Words {
+    Words::new(
+        "the program ends in the instant in which it begins, because nothing in it waits, counts or reads a sensor, and then motors rest: let a 'Wait and send' follow",
+        "программа кончается в то же мгновение, когда начинается, потому что в ней ничто не ждёт, не считает и не читает датчик, и моторы стоят: поставьте следом ожидание",
+    )
+}
+
+pub(crate) fn too_much_power(power: i32, counts: i32) -> Words {
+    Words::new(
+        format!("a power of {power} counts as {counts}: write a number from -100 to 100"),
+        format!("мощность {power} считается за {counts}: напишите число от -100 до 100"),
+    )
+}
+
+pub(crate) fn borders_swapped(from: i32, to: i32) -> Words {
+    Words::new(
+        format!(
+            "the upper border {to} is below the lower one {from}, so they count as {to} to {from}: swap them"
+        ),
+        format!(
+            "верхняя граница {to} меньше нижней {from}, поэтому числа будут от {to} до {from}: поменяйте их местами"
+        ),
     )
 }
 
@@ -242,14 +343,14 @@ pub(crate) fn no_window(ms: i32) -> Words {
     )
 }
 
-pub(crate) fn two_writers(port: &str, names: &[String; 2]) -> Words {
+pub(crate) fn two_writers(ports: &str, names: &[String; 2]) -> Words {
     let [one, other] = names;
     Words::new(
         format!(
-            "{one} and {other} both drive {port} and nothing decides between them: put a Flow replacer, a Flow delay, an If or a Switch there"
+            "{one} and {other} both drive {ports} and nothing decides between them, so the last one to speak counts: put a Flow replacer or a Flow delay before one of them, or one If or Switch before both"
         ),
         format!(
-            "{one} и {other} управляют {port}, и ничто не выбирает между ними: поставьте подавление, торможение, условие или выбор"
+            "{one} и {other} управляют {ports}, и ничто не выбирает между ними, поэтому действует сказанное последним: поставьте подавление или торможение перед одним из них либо общее условие или выбор перед обоими"
         ),
     )
 }
