@@ -48,6 +48,14 @@ impl Side {
         }
     }
 
+    /// Whether neither comes before the other: a number and a text, even one that is a number.
+    fn has_no_order(self, other: Self) -> bool {
+        matches!(
+            (self, other),
+            (Self::Number, Self::Text) | (Self::Text, Self::Number)
+        )
+    }
+
     fn words(self) -> [&'static str; 2] {
         match self {
             Self::Number => words::A_NUMBER,
@@ -82,6 +90,12 @@ pub(super) fn look(
         {
             let place = program.property_place(text.node, text.property, Some(*at));
             found.warn(place, words::kinds_differ(one.words(), other.words()));
+        } else if let [Some(one), Some(other)] = sides
+            && orders(*operator)
+            && one.has_no_order(other)
+        {
+            let place = program.property_place(text.node, text.property, Some(*at));
+            found.warn(place, words::no_order(operator.sign()));
         }
     }
 }
@@ -98,6 +112,11 @@ fn is_usual(program: &Program, text: &Text, tree: &Tree) -> bool {
     let statements = tree.statements();
     let is_true = statements.len() == 1 && *tree.node(statements[0]) == Part::Bool(true);
     is_true && matches!(does, Does::Filter | Does::Switch)
+}
+
+/// Whether an operator asks which of two is the smaller one.
+fn orders(operator: Binary) -> bool {
+    compares(operator) && !matches!(operator, Binary::Equal | Binary::NotEqual)
 }
 
 fn compares(operator: Binary) -> bool {

@@ -4,33 +4,76 @@
 
 use super::found::{Found, port_place};
 use super::types::{Of, Types};
+use super::units::{Units, assigned_last};
 use super::words;
-use crate::blocks::{Does, Kind, SYNCHRONIZED};
-use crate::program::{Flow, NodeId, Op, Program, Target};
-use lang_expr::Source;
+use crate::blocks::{BACKGROUNDS, COLORS, Does, Kind, LED_COLORS, Row, SYNCHRONIZED};
+use crate::lower::{DATA, chosen};
+use crate::program::{Flow, Formula, NodeId, Op, Program, Target};
+use lang_expr::tree::Node as Part;
+use lang_expr::{Source, Value};
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 /// Edges whose tokens their port cannot take, and inputs that a block needs and that have no edge.
 pub(super) fn look(program: &Program, types: &Types, found: &mut Found) {
+    let mut texts = Texts::of(program);
     for id in 0..program.nodes.len() as NodeId {
         for (port, to) in program.edges(id) {
-            look_at_edge(
-                program,
-                types.outs[id as usize][usize::from(port)],
-                to,
-                found,
-            );
+            let of = types.outs[id as usize][usize::from(port)];
+            let from = Target { node: id, port };
+            look_at_edge(of, (from, to), &mut texts, found);
+            look_at_word(of, (from, to), &mut texts, found);
         }
         look_at_inputs(program, id, found);
     }
 }
 
-fn look_at_edge(program: &Program, of: Of, to: Target, found: &mut Found) {
+/// What is read of texts, each once, however many edges are there.
+struct Texts<'a> {
+    program: &'a Program,
+    units: Units,
+    /// Texts whose assignments are told.
+    told: HashSet<Formula>,
+    /// Whether a block that sends tokens on looks into them before.
+    reads: HashMap<NodeId, bool>,
+    /// Texts that outputs always give.
+    constants: HashMap<(NodeId, u8), Option<Rc<str>>>,
+}
+
+fn look_at_edge(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, found: &mut Found) {
+    let program = texts.program;
     let node = program.node(to.node);
     let Some(port) = node.row.ports.get(usize::from(to.port)) else {
         return;
     };
     let place = || port_place(program, to.node, to.port);
-    let is_trigger = match node.row.does {
+    let is_unit = of == Of::Unit && port.of.is_data();
+    if is_unit && (!is_trigger(node.row.does) || texts.reads_token(to)) {
+        match texts.units.text(from.node, from.port) {
+            Some(formula) => texts.tell_assignment(formula, port.name, found),
+            None => found.warn(place(), words::unit_here(port.name)),
+        }
+    } else if (of, port.of) == (Of::Digits, Kind::Whole) {
+        found.warn(place(), words::number_as_text());
+    } else if !of.fits(port.of) {
+        let wanted = match port.of {
+            Kind::Unit | Kind::Any => words::A_VALUE,
+            Kind::Truth => words::A_TRUTH,
+            Kind::Whole => words::A_WHOLE,
+            Kind::Text => words::A_TEXT,
+            Kind::List | Kind::Items(_) => words::A_LIST,
+        };
+        let count = match port.of {
+            Kind::Items(count) => Some(count),
+            Kind::Unit | Kind::Any | Kind::Truth | Kind::Whole | Kind::Text | Kind::List => None,
+        };
+        found.error(place(), words::does_not_fit(of.words(), wanted, count));
+    }
+}
+
+/// Whether a block takes a token without a value as well as any other, or hands it on.
+fn is_trigger(does: Does) -> bool {
+    match does {
         Does::Stop
         | Does::If
         | Does::Switch
@@ -73,24 +116,129 @@ fn look_at_edge(program: &Program, of: Of, to: Target, found: &mut Found) {
         | Does::Clear
         | Does::Smile
         | Does::Draw(_) => false,
+    }
+}
+
+impl<'a> Texts<'a> {
+    fn of(program: &'a Program) -> Self {
+        Self {
+            program,
+            units: Units::of(program),
+            told: HashSet::new(),
+            reads: HashMap::new(),
+            constants: HashMap::new(),
+        }
+    }
+
+    /// Whether a block that sends tokens on looks into those of this port before.
+    fn reads_token(&mut self, to: Target) -> bool {
+        let program = self.program;
+        if program.node(to.node).row.port("DATA") != Some(to.port) {
+            return false;
+        }
+        let reads = self.reads.entry(to.node);
+        *reads.or_insert_with(|| reads_token(program, to.node))
+    }
+
+    /// Tells the text whose last statement gives a variable a value, and so none to its output.
+    fn tell_assignment(&mut self, formula: Formula, port: &str, found: &mut Found) {
+        if !self.told.insert(formula) {
+            return;
+        }
+        let text = &self.program.formulas[formula as usize];
+        let source = Source::new(&text.text, text.wanted);
+        let Some(target) = assigned_last(&source) else {
+            return;
+        };
+        let tree = source.tree();
+        let mut name = None;
+        if let Part::Name(one) = tree.node(target) {
+            name = Some(&**one);
+        }
+        let at = Some(tree.place(target));
+        let place = self.program.property_place(text.node, text.property, at);
+        found.warn(place, words::assigns_last(text.property, port, name));
+    }
+
+    /// The text that an output always gives, where that is known.
+    fn constant(&mut self, from: Target) -> Option<Rc<str>> {
+        let program = self.program;
+        let known = self.constants.entry((from.node, from.port));
+        known.or_insert_with(|| constant(program, from)).clone()
+    }
+}
+
+/// Whether a condition of a block reads its token, before others may have decided.
+fn reads_token(program: &Program, id: NodeId) -> bool {
+    let reads = |formula: &Formula| {
+        let text = &program.formulas[*formula as usize];
+        let source = Source::new(&text.text, text.wanted);
+        source.names().any(|name| DATA.contains(&name))
     };
-    if of == Of::Unit && port.of.is_data() && !is_trigger {
-        found.warn(place(), words::unit_here(port.name));
-    } else if (of, port.of) == (Of::Digits, Kind::Whole) {
-        found.warn(place(), words::number_as_text());
-    } else if !of.fits(port.of) {
-        let wanted = match port.of {
-            Kind::Unit | Kind::Any => words::A_VALUE,
-            Kind::Truth => words::A_TRUTH,
-            Kind::Whole => words::A_WHOLE,
-            Kind::Text => words::A_TEXT,
-            Kind::List | Kind::Items(_) => words::A_LIST,
-        };
-        let count = match port.of {
-            Kind::Items(count) => Some(count),
-            Kind::Unit | Kind::Any | Kind::Truth | Kind::Whole | Kind::Text | Kind::List => None,
-        };
-        found.error(place(), words::does_not_fit(of.words(), wanted, count));
+    match &program.node(id).op {
+        Op::Flow(Flow::If(condition)) => reads(condition),
+        Op::Flow(Flow::Switch { arms, .. }) => {
+            let mut conditions = arms.iter().filter_map(|(condition, _)| condition.as_ref());
+            conditions.next().is_some_and(reads)
+        }
+        Op::Flow(_) | Op::Source(_) | Op::Act(_) => false,
+    }
+}
+
+/// Words that a port takes and no others.
+fn choices(row: &Row, port: u8) -> Option<&'static [&'static str]> {
+    if row.does == Does::Led && row.port("DATA") == Some(port) {
+        return Some(LED_COLORS);
+    }
+    let colours = [
+        (Does::Pen, "COLOR", COLORS),
+        (Does::Paint, "BRUSH_COLOR", COLORS),
+        (Does::Paint, "BACKGROUND_COLOR", BACKGROUNDS),
+    ];
+    let mut colours = colours.into_iter();
+    let taken = colours.find(|(does, name, _)| row.does == *does && row.port(name) == Some(port));
+    taken.map(|(.., words)| words)
+}
+
+/// A token that is none of the words that its port takes.
+fn look_at_word(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, found: &mut Found) {
+    let program = texts.program;
+    let Some(choices) = choices(program.node(to.node).row, to.port) else {
+        return;
+    };
+    let place = || port_place(program, to.node, to.port);
+    match of {
+        Of::Truth | Of::Whole | Of::Number | Of::Digits => {
+            found.error(place(), words::no_word(of.words(), choices));
+        }
+        Of::Text => {
+            if let Some(text) = texts.constant(from)
+                && chosen(choices, &text).is_none()
+            {
+                found.error(place(), crate::words::no_choice(&text, choices));
+            }
+        }
+        // Told as what does not fit, or not known.
+        Of::Never | Of::Unit | Of::Computed | Of::List(_) | Of::Wholes(_) | Of::Any => {}
+    }
+}
+
+/// The text that an output always gives, where that is known.
+fn constant(program: &Program, from: Target) -> Option<Rc<str>> {
+    match &program.node(from.node).op {
+        Op::Flow(Flow::Constant(Value::Text(text))) => Some(text.clone()),
+        Op::Flow(Flow::Function { texts, .. }) => {
+            let at = usize::from(from.port.checked_sub(3)?) / 2;
+            let formula = (*texts.get(at)?)?;
+            let text = &program.formulas[formula as usize];
+            let source = Source::new(&text.text, text.wanted);
+            let last = source.tree().statements().last().copied()?;
+            let Part::Text(text) = source.tree().node(last) else {
+                return None;
+            };
+            Some(text.clone())
+        }
+        Op::Flow(_) | Op::Source(_) | Op::Act(_) => None,
     }
 }
 

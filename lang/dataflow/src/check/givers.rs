@@ -2,10 +2,10 @@
 //!
 //! Owns the order in which texts are understood. What their types are is in `types`.
 
-use super::fed::{Fed, fed};
+use super::fed::{Fed, fed, input};
 use crate::program::{Flow, Op, Program};
 use lang_expr::Source;
-use lang_expr::tree::{Id, Node as Part, Tree};
+use lang_expr::tree::{Binary, Id, Node as Part, Tree};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
@@ -118,7 +118,10 @@ impl Variables {
         let fed = self.fed.iter();
         self.known_fed = fed.map(|one| (one.name.clone(), Known::NotYet)).collect();
         for node in &program.nodes {
-            if let Op::Flow(Flow::Variable { names, run: None }) = &node.op {
+            // With a name alone and no tokens it gives nothing.
+            if let Op::Flow(Flow::Variable { names, run: None }) = &node.op
+                && input(node.row).is_some_and(|port| node.is_linked(port))
+            {
                 for name in names {
                     let givers = self.givers.entry(name.clone()).or_default();
                     if !self.known_fed.contains_key(name) {
@@ -146,6 +149,19 @@ impl Variables {
     /// Whether something gives a variable values.
     pub(super) fn are_given(&self, name: &str) -> bool {
         self.givers.contains_key(name)
+    }
+
+    /// Variables that something gives values, as often as it does.
+    pub(super) fn given(&self) -> impl Iterator<Item = &str> {
+        let texts = self.gives.iter().flatten().map(|name| &**name);
+        texts.chain(self.fed.iter().map(|one| &*one.name))
+    }
+
+    /// Whether a text reads the former value of one of these variables.
+    pub(super) fn reads_any(&self, index: usize, names: &HashSet<Rc<str>>) -> bool {
+        self.reads[index]
+            .iter()
+            .any(|(name, _)| names.contains(name))
     }
 
     /// What is known of a text whose own names are known so far, with the variables that it reads; `is_settled`: whether
@@ -184,7 +200,7 @@ impl Variables {
 }
 
 /// Variables that a text gives values.
-fn gives(tree: &Tree) -> HashSet<Rc<str>> {
+pub(super) fn gives(tree: &Tree) -> HashSet<Rc<str>> {
     let targets = tree.nodes.iter().filter_map(|part| match part {
         Part::Assign { target, .. } => assigned(tree, *target).cloned(),
         Part::Name(_)
@@ -206,7 +222,7 @@ fn gives(tree: &Tree) -> HashSet<Rc<str>> {
 }
 
 /// The variable that an assignment to `target` changes, wholly or in part.
-fn assigned(tree: &Tree, target: Id) -> Option<&Rc<str>> {
+pub(super) fn assigned(tree: &Tree, target: Id) -> Option<&Rc<str>> {
     let mut at = target;
     while let Part::Index { table, .. } = tree.node(at) {
         at = *table;
@@ -219,6 +235,33 @@ fn assigned(tree: &Tree, target: Id) -> Option<&Rc<str>> {
 
 /// The names whose former values a text reads: all but those that it assigns before.
 fn reads(tree: &Tree) -> HashSet<Rc<str>> {
+    reads_by(tree, |id, visit| tree.children(id, visit))
+}
+
+/// The same, without those that stand where `and` and `or` may not come.
+pub(super) fn surely_reads(tree: &Tree) -> HashSet<Rc<str>> {
+    reads_by(tree, |id, visit| match tree.node(id) {
+        Part::Binary(Binary::And | Binary::Or, left, _) => visit(*left),
+        Part::Name(_)
+        | Part::Int(_)
+        | Part::Float(_)
+        | Part::Bool(_)
+        | Part::Text(_)
+        | Part::RawText(_)
+        | Part::Nil
+        | Part::Unary(..)
+        | Part::Binary(..)
+        | Part::Call { .. }
+        | Part::Table { .. }
+        | Part::Index { .. }
+        | Part::Method { .. }
+        | Part::Assign { .. }
+        | Part::Block(_) => tree.children(id, visit),
+    })
+}
+
+/// The same, where `children` calls for each part that is looked into.
+fn reads_by(tree: &Tree, children: impl Fn(Id, &mut dyn FnMut(Id))) -> HashSet<Rc<str>> {
     let mut made: HashSet<Rc<str>> = HashSet::new();
     let mut read = HashSet::new();
     for statement in tree.statements() {
@@ -231,7 +274,7 @@ fn reads(tree: &Tree) -> HashSet<Rc<str>> {
             makes = Some(name.clone());
         }
         while let Some(id) = open.pop() {
-            tree.children(id, |child| open.push(child));
+            children(id, &mut |child| open.push(child));
             if let Part::Name(name) = tree.node(id)
                 && !made.contains(name)
             {

@@ -4,17 +4,21 @@
 
 use super::conditions;
 use super::fed::input;
+use super::first;
 use super::found::Found;
 use super::givers::{Known, Variables};
+use super::statements;
 use super::tokens::{self, taken};
+use super::unassigned::Unassigned;
+use super::units::assigned_last;
 use super::words;
 use crate::blocks::Kind;
 use crate::limits;
 use crate::lower::DATA;
-use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target, Text};
+use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target};
 use crate::sensors;
 use lang_diagram::ports::Sort;
-use lang_expr::names::{is_own, own_name};
+use lang_expr::names::own_name;
 use lang_expr::reserved::Shape;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Names, Source, Type, Value, Wanted};
@@ -207,13 +211,10 @@ struct Inference<'a> {
     texts: Vec<Of>,
     /// Who gives variables their values, and who waits for them.
     variables: Variables,
-}
-
-/// Whether an expression ends with an assignment, and so has no value.
-fn assigns_last(source: &Source) -> bool {
-    let tree = source.tree();
-    let last = tree.statements().last().copied();
-    last.is_some_and(|last| matches!(tree.node(last), Part::Assign { .. }))
+    /// Names that nothing gives a value.
+    unassigned: Unassigned,
+    /// Variables that are read before they have a value.
+    late: HashSet<Rc<str>>,
 }
 
 impl<'a> Inference<'a> {
@@ -234,6 +235,8 @@ impl<'a> Inference<'a> {
             names: sensors::names_of(program.kit),
             texts: program.formulas.iter().map(|_| Of::Any).collect(),
             variables: Variables::of(program, unsure),
+            unassigned: Unassigned::default(),
+            late: HashSet::new(),
         }
     }
 
@@ -290,7 +293,10 @@ impl<'a> Inference<'a> {
 
     /// Tells what is wrong with expressions and variables.
     fn tell(mut self, found: &mut Found) -> Types {
+        self.late = first::look(self.program, found);
         self.learn(Some(found));
+        self.unassigned
+            .tell_blocks(self.program, &self.variables, found);
         let known = &self.variables.known_fed;
         let of_variable = |name: &str| {
             let slot = self.names.find(name).filter(|_| !known.contains_key(name));
@@ -323,12 +329,18 @@ impl<'a> Inference<'a> {
             let Some(found) = found.as_deref_mut() else {
                 continue;
             };
-            if text.wanted == Wanted::Bool && assigns_last(&source) {
+            if text.wanted == Wanted::Bool && assigned_last(&source).is_some() {
                 let place = self.program.property_place(text.node, text.property, None);
                 found.error(place, words::assigning_condition());
                 continue;
             }
-            if self.tell_unassigned(&source, text, found) {
+            let known_names = (&self.names, &self.variables);
+            let is_unassigned =
+                self.unassigned
+                    .tell(self.program, text, &source, known_names, found);
+            statements::look(self.program, text, &source, found);
+            // The types of a text that reads what has no value are told of as that.
+            if is_unassigned || self.variables.reads_any(index, &self.late) {
                 continue;
             }
             match outcome {
@@ -345,29 +357,6 @@ impl<'a> Inference<'a> {
                 Ok(()) => {}
             }
         }
-    }
-
-    /// Tells names that no text of the program gives a value; whether there are any.
-    fn tell_unassigned(&self, source: &Source, text: &Text, found: &mut Found) -> bool {
-        let mut is_any = false;
-        let tree = source.tree();
-        for (part, at) in tree.nodes.iter().zip(&tree.places) {
-            let Part::Name(name) = part else {
-                continue;
-            };
-            let slot = self.names.find(name);
-            let kind = slot.and_then(|slot| self.names.kind(slot));
-            let is_variable = matches!(kind, None | Some(lang_expr::Kind::Variable));
-            if is_variable && !is_own(name) && !self.variables.are_given(name) {
-                let place = self
-                    .program
-                    .property_place(text.node, text.property, Some(*at));
-                // Told once, however many instances the block has.
-                found.error(place, words::never_assigned(name));
-                is_any = true;
-            }
-        }
-        is_any
     }
 
     /// Teaches the names what the own ones of a text are, as far as that is known.
@@ -411,6 +400,9 @@ impl<'a> Inference<'a> {
         let part = source.tree().node(last);
         if let Part::Assign { .. } = part {
             return Of::Unit;
+        }
+        if let Part::Text(text) = part {
+            return Of::of_value(&Value::text(text.clone()));
         }
         if let Part::Table { fields, .. } = part
             && fields.iter().all(|field| field.key.is_none())

@@ -3,7 +3,9 @@
 //! Owns the texts in both languages. Where something is wrong is known to who finds it.
 
 pub(crate) use crate::words::busy_instant;
-use crate::words::short;
+use crate::words::{list, short};
+use lang_expr::reserved::FUNCTIONS;
+use lang_text::near;
 use lang_text::problem::Words;
 
 pub(crate) const A_VALUE: [&str; 2] = ["a value", "значение"];
@@ -80,6 +82,31 @@ pub(crate) fn unit_here(port: &str) -> Words {
     )
 }
 
+/// `property`: a text like IO0; `name`: what it assigns to, if that is a name.
+pub(crate) fn assigns_last(property: &str, port: &str, name: Option<&str>) -> Words {
+    let output = property.trim_start_matches('I');
+    let value = name.map_or_else(|| "...".to_owned(), short);
+    Words::new(
+        format!(
+            "the last statement of {property} assigns, so {output} gives a control token, which has no value for {port}: write `; {value}` after it"
+        ),
+        format!(
+            "последнее выражение в {property} - присваивание, поэтому {output} даёт управляющий сигнал без значения для {port}: допишите после него `; {value}`"
+        ),
+    )
+}
+
+pub(crate) fn no_word(comes: [&str; 2], choices: &[&str]) -> Words {
+    let all = list(choices.iter().copied());
+    Words::new(
+        format!(
+            "{} comes here, but one of these words is needed: {all}",
+            comes[0]
+        ),
+        format!("сюда приходит {}, а нужно одно из слов: {all}", comes[1]),
+    )
+}
+
 pub(crate) fn unlinked() -> Words {
     Words::new(
         "this input has no edge, so the block never fires: connect it",
@@ -96,17 +123,77 @@ pub(crate) fn unlinked_name(name: &str, flag: &str) -> Words {
     )
 }
 
-pub(crate) fn never_assigned(name: &str) -> Words {
+/// `meant`: the name that is like it.
+pub(crate) fn never_assigned(name: &str, meant: Option<&str>) -> Words {
+    let name = short(name);
+    match meant {
+        Some(meant) => Words::new(
+            format!(
+                "{name} is never given a value; did you mean '{}'?",
+                short(meant)
+            ),
+            format!(
+                "{name} нигде не получает значения; может быть, '{}'?",
+                short(meant)
+            ),
+        ),
+        None => Words::new(
+            format!(
+                "{name} is never given a value: write `{name} = ...` in a Variable that is started first"
+            ),
+            format!(
+                "{name} нигде не получает значения: напишите `{name} = ...` в переменной, которая запускается первой"
+            ),
+        ),
+    }
+}
+
+pub(crate) fn no_function(name: &str) -> Words {
+    let known = || FUNCTIONS.iter().map(|(name, ..)| *name);
+    let near = near::did_you_mean(name, known());
+    let (name, all) = (short(name), list(known()));
     Words::new(
         format!(
-            "{} is never given a value: write `{} = ...` in a Variable that is started first",
-            short(name),
-            short(name)
+            "there is no function {name}{}; there are: {all}",
+            near.english
+        ),
+        format!("функции {name} нет{}; есть: {all}", near.russian),
+    )
+}
+
+pub(crate) fn read_first(name: &str) -> Words {
+    let name = short(name);
+    Words::new(
+        format!(
+            "{name} is read before it has a value, because nothing else gives it one: write `{name} = 0`, or what it has to be first, in a Variable that is started first"
         ),
         format!(
-            "{} нигде не получает значения: напишите `{} = ...` в переменной, которая запускается первой",
-            short(name),
-            short(name)
+            "{name} читается раньше, чем получает значение, потому что больше его ничто не задаёт: напишите `{name} = 0` или другое начальное значение в переменной, которая запускается первой"
+        ),
+    )
+}
+
+pub(crate) fn idle_statement() -> Words {
+    Words::new(
+        "nobody takes this value, because another statement follows: is an operator missing between them?",
+        "это значение никто не берёт, потому что дальше следует ещё одно выражение: не пропущен ли между ними знак операции?",
+    )
+}
+
+pub(crate) fn empty_condition() -> Words {
+    Words::new(
+        "the condition is empty: write one, such as `data > 0`",
+        "условие пустое: напишите его, например `data > 0`",
+    )
+}
+
+pub(crate) fn no_order(sign: &str) -> Words {
+    Words::new(
+        format!(
+            "`{sign}` compares a number with a text, and neither is smaller: write a number without quotes"
+        ),
+        format!(
+            "`{sign}` сравнивает число с текстом, и ни одно из них не меньше: напишите число без кавычек"
         ),
     )
 }

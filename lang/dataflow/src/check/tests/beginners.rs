@@ -114,6 +114,43 @@ fn outputs_that_never_give_anything_are_told_with_the_reason() {
 }
 
 #[test]
+fn a_text_that_ends_with_an_assignment_is_told_where_it_is() {
+    only(
+        "A Sensor\nF Text programming {IO0=b = 1; a = I0}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3",
+        "warning: main: Text programming 'F': 'IO0', 1:8 the last statement of IO0 assigns, so O0 gives a control token, which has no value for M3: write `; a` after it",
+    );
+    // Through a wait, and out of a subprogram.
+    only(
+        "A Sensor\nF Text programming {IO1=a = I0}\nW Wait and send\nM Motors\nA.OUT > F.I0\nF.O1 > W.DATA\nW.OUT > M.M3",
+        "warning: main: Text programming 'F': 'IO1', 1:1 the last statement of IO1 assigns, so O1 gives",
+    );
+    let found = calling(
+        "A Sensor\nC User block of PD\nM Motors\nA.OUT > C.I0\nC.O0 > M.M4",
+        "PD",
+        "I Input port\nF Text programming {IO0=u = I0}\nO Output port\nI.OUT > F.I0\nF.O0 > O.DATA",
+    );
+    one(
+        &found,
+        "warning: PD: Text programming 'F': 'IO0', 1:1 the last statement of IO0 assigns",
+    );
+    only(
+        "A Sensor\nF Text programming {IO0=a = I0}\nI If\nS Say\nA.OUT > F.I0\nF.O0 > I.DATA\nI.TRUE > S.CF_IN",
+        "warning: main: Text programming 'F': 'IO0', 1:1 the last statement of IO0 assigns",
+    );
+    only(
+        "R Led\nI If\nS Say\nR.CF_OUT > I.DATA\nI.TRUE > S.CF_IN",
+        "warning: main: If 'I': 'DATA': a control token comes to DATA, which has no value",
+    );
+    // As a start it is as good as any other.
+    for good in [
+        "A Sensor\nF Text programming {IO0=a = I0}\nS Say\nA.OUT > F.I0\nF.O0 > S.CF_IN",
+        "A Sensor\nF Text programming {IO0=a = I0}\nI If {condition=a > 5}\nS Say\nA.OUT > F.I0\nF.O0 > I.DATA\nI.TRUE > S.CF_IN",
+    ] {
+        assert_eq!(told(good), Vec::<String>::new(), "{good}");
+    }
+}
+
+#[test]
 fn two_blocks_that_drive_the_same_motors_are_told_of_once() {
     // One begins, the other one ends it: each has its time.
     let stops = "M Motors\nA Sensor\nF If {condition=data < 20}\nN Motors {M3Power=0 | M4Power=0}\nA.OUT > F.DATA\nF.TRUE > N.CF_IN";
@@ -125,6 +162,130 @@ fn two_blocks_that_drive_the_same_motors_are_told_of_once() {
     only(
         "A Sensor\nB Sensor {VarName=sensorA2}\nM Motors\nN Motors\nA.OUT > M.M3\nB.OUT > N.M3\nA.OUT > M.M4\nB.OUT > N.M4",
         "warning: main: Motors 'M': Motors 'M' and Motors 'N' both drive M3, M4 and nothing decides between them",
+    );
+}
+
+#[test]
+fn a_variable_that_is_read_before_it_has_a_value_is_told() {
+    for (texts, place) in [
+        (
+            "IO0=e = I0 | IO1=u = 0.6*e + 1.5*(e - ep); ep = e; u",
+            "'IO1', 1:22",
+        ),
+        ("IO0=I0 - ep | IO1=ep = I0", "'IO0', 1:6"),
+        ("IO0=ep = ep + I0; ep", "'IO0', 1:6"),
+    ] {
+        let text = format!(
+            "A Sensor\nF Text programming {{{texts}}}\nS Say\nA.OUT > F.I0\nF.CF_OUT > S.CF_IN"
+        );
+        only(
+            &text,
+            &format!(
+                "error: main: Text programming 'F': {place} ep is read before it has a value, because nothing else gives it one: write `ep = 0`"
+            ),
+        );
+        for begun in [
+            "V Variable {variable=ep = 0}",
+            "V Variable {variable=ep}\nB Value generator {varValue=0}\nB.OUT > V.IN",
+        ] {
+            assert_eq!(told(&format!("{text}\n{begun}")), Vec::<String>::new());
+        }
+    }
+    // What `and` does not come to is not read.
+    let later = "A Sensor\nF Text programming {IO0=ep = I0 > 1000 and ep == 5; ep}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA";
+    assert_eq!(told(later), Vec::<String>::new());
+    // Here the second text may be computed first.
+    let apart = "A Sensor\nB Sensor\nF Text programming {synch=false | IO0=I0 - ep | IO1=ep = I1}\nS Say\nA.OUT > F.I0\nB.OUT > F.I1\nF.O0 > S.DATA";
+    assert_eq!(told(apart), Vec::<String>::new());
+}
+
+#[test]
+fn a_variable_with_a_name_alone_gives_no_value() {
+    only(
+        "V Variable {variable=old}\nA Sensor\nF Text programming {IO0=I0 - old}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA",
+        "error: main: Text programming 'F': 'IO0', 1:6 old is never given a value: write `old = ...`",
+    );
+    only(
+        "V Variable {variable=old}\nS Say\nV.OUT > S.DATA",
+        "error: main: Variable 'V': 'variable': old is never given a value: write `old = ...`",
+    );
+}
+
+#[test]
+fn misspelt_names_and_unknown_functions_are_told_with_what_was_meant() {
+    let of = |text: &str| {
+        format!(
+            "K Variable {{variable=Kp = 2}}\nA Sensor\nF Text programming {{IO0={text}}}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA"
+        )
+    };
+    for (text, wanted) in [
+        (
+            "i0 + 1",
+            "1:1 i0 is never given a value; did you mean 'I0'?",
+        ),
+        (
+            "I0 * kp",
+            "1:6 kp is never given a value; did you mean 'Kp'?",
+        ),
+        (
+            "I0 + senzorA1",
+            "1:6 senzorA1 is never given a value; did you mean 'sensorA1'?",
+        ),
+        (
+            "I0 + zzz",
+            "1:6 zzz is never given a value: write `zzz = ...`",
+        ),
+        (
+            "clamp(I0, 0, 50)",
+            "1:1 there is no function clamp; there are: time, sensor,",
+        ),
+        (
+            "I0 + flor(2.5)",
+            "1:6 there is no function flor; did you mean 'floor'?; there are: ",
+        ),
+    ] {
+        only(
+            &of(text),
+            &format!("error: main: Text programming 'F': 'IO0', {wanted}"),
+        );
+    }
+}
+
+#[test]
+fn values_that_end_the_program_are_told_by_their_types() {
+    let near = |to: &str| {
+        format!("A Sensor\nI If\nL Led\nM Motors\nP Paint settings\nA.OUT > I.DATA\nI.TRUE > {to}")
+    };
+    only(
+        &near("L.DATA"),
+        "error: main: Led 'L': 'DATA': a whole number comes here, but one of these words is needed: off, green, orange, red",
+    );
+    only(
+        &near("P.BACKGROUND_COLOR"),
+        "error: main: Paint settings 'P': 'BACKGROUND_COLOR': a whole number comes here, but one of these words",
+    );
+    for yellow in [
+        "V Value generator {varValue=\"yellow\"}\nL Led\nV.OUT > L.DATA",
+        "V Value generator\nF Text programming {IO0=\"yellow\"}\nL Led\nV.OUT > F.I0\nF.O0 > L.DATA",
+    ] {
+        only(
+            yellow,
+            "error: main: Led 'L': 'DATA': 'yellow' is none of off, green, orange, red",
+        );
+        assert_eq!(told(&yellow.replace("yellow", "Red")), Vec::<String>::new());
+    }
+    for go in [
+        "V Value generator {varValue=\"go\"}\nM Motors\nV.OUT > M.M3",
+        "A Sensor\nF Text programming {IO0=\"go\"}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3",
+    ] {
+        only(
+            go,
+            "error: main: Motors 'M': 'M3': a text comes here, but a whole number is needed",
+        );
+    }
+    only(
+        "A Sensor\nI If {condition=data < \"25\"}\nS Say\nA.OUT > I.DATA\nI.TRUE > S.CF_IN",
+        "warning: main: If 'I': 'Condition', 1:1 `<` compares a number with a text, and neither is smaller: write a number without quotes",
     );
 }
 
@@ -151,6 +312,30 @@ fn motors_in_a_program_without_time_are_told() {
 
 #[test]
 fn small_slips_are_told() {
+    let of = |text: &str| {
+        format!(
+            "A Sensor\nF Text programming {{IO0={text}}}\nS Say\nA.OUT > F.I0\nA.OUT > F.I1\nF.O0 > S.DATA"
+        )
+    };
+    for (text, at) in [
+        ("I0 I1", "1:1"),
+        ("a = 2; I0 + a; I1", "1:8"),
+        ("5 I0", "1:1"),
+    ] {
+        only(
+            &of(text),
+            &format!(
+                "warning: main: Text programming 'F': 'IO0', {at} nobody takes this value, because another statement follows"
+            ),
+        );
+    }
+    for good in ["print(I0); I1", "a = I0; a"] {
+        assert_eq!(told(&of(good)), Vec::<String>::new(), "{good}");
+    }
+    only(
+        "A Sensor\nI If {condition=}\nS Say\nA.OUT > I.DATA\nI.FALSE > S.CF_IN",
+        "warning: main: If 'I': 'Condition': the condition is empty: write one, such as `data > 0`",
+    );
     only(
         "M Motors {M3Power=150}\nW Wait and send\nM.CF_OUT > W.CF_IN",
         "warning: main: Motors 'M': 'M3=': a power of 150 counts as 100",

@@ -130,7 +130,7 @@ fn a_chain_of_variables_is_followed_in_whatever_order_it_stands() {
 
 #[test]
 fn many_blocks_that_give_one_variable_cost_what_they_are() {
-    let mut text = String::new();
+    let mut text = "I Variable {variable=x = 0}\n".to_owned();
     for number in 0..20_000 {
         text += &format!("V{number} Variable {{variable=x = x + 1}}\n");
     }

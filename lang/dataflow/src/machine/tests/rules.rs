@@ -570,3 +570,28 @@ fn a_pad_is_told_while_it_is_touched_and_once_when_it_is_let_go() {
         ]
     );
 }
+
+/// What `check` says of such programs before they run.
+#[test]
+fn a_variable_that_is_read_before_it_has_a_value_ends_the_program() {
+    for texts in [
+        "IO0=e = I0 | IO1=u = 0.6*e + 1.5*(e - ep); ep = e; u",
+        "IO0=I0 - ep | IO1=ep = I0",
+        "IO0=ep = ep + I0; ep",
+        "IO0=I0 > 1000 and ep > 5 | IO1=ep = I0",
+    ] {
+        let text = format!("V Value generator\nF Text programming {{{texts}}}\nV.OUT > F.I0");
+        let error = error_of(&text);
+        assert!(
+            error.contains("Text programming 'F': 'IO"),
+            "{texts}: {error}"
+        );
+    }
+    // An element makes its table, and what `and` does not come to is not read.
+    for texts in ["IO0=a[0] = 5; a[0]", "IO0=ep = I0 > 1000 and ep == 5; ep"] {
+        let text = format!("V Value generator\nF Text programming {{{texts}}}\nV.OUT > F.I0");
+        let (_, status) = simply(&text, 100);
+        let has_failed = format!("{status:?}").contains("true");
+        assert!(!has_failed, "{texts}: {status:?}");
+    }
+}
