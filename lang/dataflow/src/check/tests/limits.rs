@@ -101,12 +101,12 @@ fn a_constant_is_a_token_and_no_longer_than_one() {
 #[test]
 fn a_text_that_is_a_number_is_told_where_a_number_is_wanted() {
     for gives in [
-        "V Value generator {varValue='50'}\nM Motors\nV.OUT > M.M3",
-        "V Text programming {IO0=\"50\"}\nM Motors\nV.O0 > M.M3",
+        "V Value generator {varValue='50'}\nM Servo motors\nV.OUT > M.S1",
+        "V Text programming {IO0=\"50\"}\nM Servo motors\nV.O0 > M.S1",
     ] {
         only(
             gives,
-            "warning: main: Motors 'M': 'M3': a text comes here that is a number, and counts as that",
+            "warning: main: Servo motors 'M': 'S1': a text comes here that is a number, and counts as that",
         );
     }
     only(

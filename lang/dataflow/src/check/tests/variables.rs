@@ -137,6 +137,6 @@ fn many_blocks_that_give_one_variable_cost_what_they_are() {
     // Looking at each giver for each reader would be half a milliard looks in each pass.
     only(
         &text,
-        "warning: main: Variable 'V10000': more than 10000 reactions",
+        "warning: main: Variable 'V9999': more than 10000 reactions",
     );
 }
