@@ -225,9 +225,9 @@ fn node(program: &Program, id: NodeId, found: &mut Found) {
 
 /// Numbers that stand in properties and mean something else: powers that no motor has, borders in the wrong order.
 fn numbers(program: &Program, came: u16, id: NodeId, found: &mut Found) {
-    const POWER_MAX: i32 = 100;
+    const FULL_POWER: i32 = 100;
     let is_too_much = |port: Port, power: i32| {
-        port.sort() == Sort::Motor && !(-POWER_MAX..=POWER_MAX).contains(&power)
+        port.sort() == Sort::Motor && !(-FULL_POWER..=FULL_POWER).contains(&power)
     };
     let mut powers: Vec<(String, i32)> = Vec::new();
     let starts = program.node(id).row.control();
@@ -263,7 +263,7 @@ fn numbers(program: &Program, came: u16, id: NodeId, found: &mut Found) {
         let place = property_place(program, id, &name);
         found.warn(
             place,
-            words::too_much_power(power, power.clamp(-POWER_MAX, POWER_MAX)),
+            words::too_much_power(power, power.clamp(-FULL_POWER, FULL_POWER)),
         );
     }
 }
