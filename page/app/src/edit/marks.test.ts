@@ -30,6 +30,9 @@ describe('the line of an error', () => {
       '/usr/bin/luajit: /x/a.lua:2: attempt to call a nil value\nstack traceback:\n\t/x/a.lua:9: in main chunk';
     expect(marksOfRun('a.lua', lua)).toEqual([{ line: 2, text: 'attempt to call a nil value' }]);
     expect(marksOfRun('a.lua', 'extra.lua:2: x')).toEqual([]);
+    const flow = "no program\nc.flow is not changed: 2:6 there is no block 'Sensr'";
+    expect(marksOfRun('c.flow', flow)).toEqual([{ line: 2, text: "there is no block 'Sensr'" }]);
+    expect(marksOfRun('c.lua', flow)).toEqual([]);
     expect(marksOfRun('a(b.lua', 'x/a(b.lua:7: y')).toEqual([{ line: 7, text: 'y' }]);
   });
 

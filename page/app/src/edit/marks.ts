@@ -49,6 +49,9 @@ export function marksOfRun(name: string, said: string): Mark[] {
   // JavaScript of the robot.
   const script = /^Line (\d{1,9}): (.*)$/m.exec(said);
   if (script && /\.js$/.test(name)) return [{ line: line(script[1]), text: script[2] ?? '' }];
+  // A program of data flow that cannot be read.
+  const flow = /(?:^|: )(\d{1,9}):\d+ (.*)$/m.exec(said);
+  if (flow && /\.flow$/.test(name)) return [{ line: line(flow[1]), text: flow[2] ?? '' }];
   // Lua, and what else names its file.
   const other = new RegExp(`(?:^|[\\s/])${file}:(\\d{1,9}):(?:\\d+:)? ?(.*)$`, 'm').exec(said);
   return other ? [{ line: line(other[1]), text: other[2] ?? '' }] : [];

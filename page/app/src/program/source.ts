@@ -20,6 +20,14 @@ const BEGINNINGS: Record<string, string> = {
     "print('battery: ' .. battery:read('*l') .. ' V')",
     '',
   ].join('\n'),
+  flow: [
+    '# A value every second, and what is done with it.',
+    'diagram "Clock"',
+    '  clock: Loop(start_border = 1, end_border = 10, time = 1000)',
+    '  count: "Text programming"(IO0 = `print("second " .. I0); I0`)',
+    '  clock.OUT -> count.I0',
+    '',
+  ].join('\n'),
 };
 
 /** The end of a name, without its dot. */

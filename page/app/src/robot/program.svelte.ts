@@ -46,6 +46,21 @@ export function isDrawn(name: string): boolean {
   return /\.(qrs|flow)$/.test(name);
 }
 
+/** How many errors of a program are shown beside its picture; the output has all. */
+const ERRORS = 5;
+
+/** Why the last run of a program has failed; nothing if it runs, or has ended well. */
+export function failureOf(said: readonly OutputLine[], name: string): string[] {
+  let errors: string[] = [];
+  let hasFailed = false;
+  for (const { kind, text } of said) {
+    if (kind === 'info' && text === `${name} has started`) [errors, hasFailed] = [[], false];
+    else if (kind === 'info' && text.startsWith(`${name} has failed`)) hasFailed = true;
+    else if (kind === 'error' && !hasFailed) errors.push(text);
+  }
+  return hasFailed ? errors.slice(0, ERRORS) : [];
+}
+
 /** What the robot's `status` says about a program: its name, or nothing if none runs. */
 export function runningOf(status: string): string {
   const line = /^status: program (.*)$/m.exec(status)?.[1] ?? 'none';

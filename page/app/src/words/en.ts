@@ -114,7 +114,7 @@ export const en = {
   newProgram: 'New program',
   newBegin: 'Write',
   newName:
-    'A name of at most 200 letters that ends in .py, .js or .lua, without colons and backslashes; no part begins with a dot.',
+    'A name of at most 200 letters that ends in .py, .js, .lua or .flow, without colons and backslashes; no part begins with a dot.',
   newTaken: (name: string) => `${name} is on the robot already.`,
   notSaved: 'not on the robot',
   discard: 'Discard',
