@@ -105,6 +105,11 @@ impl Listing {
         }
     }
 
+    /// Whether it is that of a data-flow program.
+    pub(crate) fn is_flow(&self) -> bool {
+        !self.callings.is_empty()
+    }
+
     /// The blocks that a name of several means: where a subprogram begins, or all of a type; of a data-flow program also the
     /// one that a person calls so.
     pub(crate) fn named(&self, name: &str) -> Vec<Box<str>> {

@@ -75,6 +75,8 @@ pub(crate) struct At {
 /// A port of a data-flow program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Port {
+    /// The calls of subprograms in which it is, with a slash between them; empty in the main diagram.
+    pub call: String,
     /// Its block, by the caption or else by the type.
     pub block: String,
     pub name: String,
@@ -87,9 +89,10 @@ pub(crate) struct Port {
 }
 
 impl Port {
-    /// As an edge names it.
+    /// As an edge names it, after the call in which it is.
     pub(crate) fn full_name(&self) -> String {
-        format!("{}.{}", self.block, self.name)
+        let slash = if self.call.is_empty() { "" } else { "/" };
+        format!("{}{slash}{}.{}", self.call, self.block, self.name)
     }
 }
 
@@ -241,6 +244,7 @@ fn at(value: &Value) -> At {
 fn port(value: &Value) -> Port {
     let caption = text(value, "caption");
     Port {
+        call: text(value, "call"),
         block: match caption.is_empty() {
             true => text(value, "block"),
             false => caption,

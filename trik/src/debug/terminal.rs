@@ -364,14 +364,21 @@ impl<'a> Terminal<'a> {
             self.say(&format!("{name:12} {does:20} {line:3} {}", text.trim()))?;
         }
         if self.told.threads.is_empty() {
-            self.says(words::no_thread())?;
+            self.says(self.no_thread())?;
         }
         Ok(())
     }
 
+    fn no_thread(&self) -> Words {
+        match self.listing.is_flow() {
+            true => words::no_threads(),
+            false => words::no_thread(),
+        }
+    }
+
     fn calls(&self) -> Result<(), Error> {
         let Some(thread) = self.told.thread() else {
-            return self.says(words::no_thread());
+            return self.says(self.no_thread());
         };
         let places = std::iter::once(&thread.at).chain(thread.calls.iter().rev());
         for (index, at) in places.take(limits::DEBUG_CALLS_SHOWN).enumerate() {

@@ -214,7 +214,7 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
             let block = line.and_then(|line| listing.blocks(line).first().cloned());
             block.ok_or_else(|| none("the diagram has no such line"))
         }
-        (Ok(_), None) => Err(none("lines are those of --file FILE")),
+        (Ok(_), None) => Err(none("lines and labels are those of --file FILE")),
         (Err(_), Some(listing)) => {
             let id = listing.id_of(place).map(Into::into);
             id.ok_or_else(|| {
@@ -222,6 +222,10 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
                 let near = near.map_or_else(String::new, |near| near.english);
                 none(&format!("the program has no such block{near}"))
             })
+        }
+        // An id has a slash or a brace; the robot knows no others.
+        (Err(_), None) if !place.contains(['/', '{']) => {
+            Err(none("lines and labels are those of --file FILE"))
         }
         (Err(_), None) => Ok(place.into()),
     }

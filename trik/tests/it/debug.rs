@@ -131,7 +131,8 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
     let said = trik(&["break", "n", "--change"]).good();
     assert!(said.contains(": n was "), "{said}");
     for (words, why) in [
-        (&["break", "5"][..], "lines are those of --file"),
+        (&["break", "5"][..], "lines and labels are those of --file"),
+        (&["break", "drive"], "lines and labels are those of --file"),
         (&["break", "99", "--file", &file], "no such line"),
         (&["break", "{nobody}"], "the program has no such block"),
         (

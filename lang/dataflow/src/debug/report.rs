@@ -131,15 +131,35 @@ fn place(program: &Program, at: Target) -> Object {
     block(program, at.node).text("port", name)
 }
 
-/// A block: its diagram, its id, its type, and its caption.
+/// A block: its diagram, its id, its type, and its caption; of one in a subprogram, the call too.
 fn block(program: &Program, at: NodeId) -> Object {
     let node = program.node(at);
     let instance = &program.instances[node.instance as usize];
-    object()
+    let told = object()
         .text("diagram", &instance.name)
         .text("id", &node.id)
         .text("block", node.row.element)
-        .text("caption", &node.caption)
+        .text("caption", &node.caption);
+    match instance.caller {
+        Some(caller) => told.text("call", &calls(program, caller)),
+        None => told,
+    }
+}
+
+/// The calls that a block runs in, by their captions or else their types, the outermost first.
+fn calls(program: &Program, inner: NodeId) -> String {
+    let mut names = Vec::new();
+    let mut next = Some(inner);
+    while let Some(caller) = next {
+        let node = program.node(caller);
+        names.push(match node.caption.is_empty() {
+            true => node.row.element,
+            false => &*node.caption,
+        });
+        next = program.instances[node.instance as usize].caller;
+    }
+    names.reverse();
+    names.join("/")
 }
 
 fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {

@@ -84,6 +84,13 @@ pub(crate) fn no_thread() -> Words {
     Words::new("no thread lives", "ни один поток не выполняется")
 }
 
+pub(crate) fn no_threads() -> Words {
+    Words::new(
+        "a data-flow program has no threads and no calls to return from: it stops and steps as a whole",
+        "в потоковой программе нет задач и возвратов из вызова: она останавливается и шагает целиком",
+    )
+}
+
 pub(crate) fn no_variable() -> Words {
     Words::new(
         "no variable has a value yet",
@@ -268,6 +275,12 @@ pub(crate) fn another_runs(diagram: &str, block: &str) -> Words {
 
 /// What a port of a data-flow program is about to get.
 pub(crate) fn token(port: &str, value: &str) -> Words {
+    if value.is_empty() {
+        return Words::new(
+            format!("      {port} gets a token without a value"),
+            format!("      {port} получит сигнал без значения"),
+        );
+    }
     Words::new(
         format!("      {port} gets {value}"),
         format!("      {port} получит {value}"),

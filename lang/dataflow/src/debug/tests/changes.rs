@@ -255,9 +255,12 @@ fn each_call_of_a_subprogram_keeps_its_own_and_a_random_that_repeats_no_more_end
     told(&mut desk, "break qrm:/inner/S");
     runs(&mut desk, &mut robot, 0, 20);
     assert!(desk.is_stopped());
+    let call = |name| format!("\"caption\":\"S\",\"call\":\"{name}\"");
+    assert!(told(&mut desk, "look").contains(&call("C")));
     told(&mut desk, "continue");
     runs(&mut desk, &mut robot, 30, 30);
     assert!(desk.is_stopped(), "in the other call");
+    assert!(told(&mut desk, "look").contains(&call("D")));
     told(&mut desk, "clear all");
     told(&mut desk, "continue");
     let once = outer.replace("repeatedly=true", "repeatedly=false");
