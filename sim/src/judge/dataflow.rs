@@ -102,7 +102,11 @@ impl Program for Dataflow {
                     diagram: instance.map_or_else(String::new, |one| one.name.to_string()),
                     id: node.id.to_string(),
                     kind: node.row.element.to_owned(),
-                    caption: [node.row.shown.to_owned(), node.row.russian.to_owned()],
+                    // A person knows a block by its label; the type stands beside it.
+                    caption: match node.caption.is_empty() {
+                        true => [node.row.shown.to_owned(), node.row.russian.to_owned()],
+                        false => [node.caption.to_string(), node.caption.to_string()],
+                    },
                 },
             }
         });
