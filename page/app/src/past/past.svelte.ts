@@ -85,7 +85,8 @@ export class Past {
     this.running = running?.name ?? '';
     const stepCount = countUntil(this.memory.steps, this.#now);
     if (stepCount !== this.#stepCount || !running) {
-      this.#stepCount = stepCount;
+      // What is not asked for now is asked for when something runs again.
+      this.#stepCount = running ? stepCount : -1;
       this.told = running && this.#steps.at(this.#now, running.since);
     }
     const lit = running ? this.#steps.litAt(this.#now) : new Set<string>();

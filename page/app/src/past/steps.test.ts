@@ -66,7 +66,7 @@ it('blocks of data flow have reacted lately, and ports the last token, forward a
   expect([...steps.litAt(5.5)]).toEqual(['f']);
   expect([...steps.litAt(5.6)]).toEqual([]);
   expect(ports(6)).toEqual(['fF.O0=7*1', 'fF.O1=8*2', 'f.O0=1*4', '.=*0']);
-  expect([...steps.litAt(6)]).toEqual(['f', 'g', '']);
+  expect([...steps.litAt(6)]).toEqual(['f', 'g']);
   expect(steps.at(6, 4)).toMatchObject({
     leftOut: 2,
     reacted: [{ count: 3 }, { count: 0 }, { count: 1 }, {}],
@@ -75,4 +75,24 @@ it('blocks of data flow have reacted lately, and ports the last token, forward a
   expect(ports(7)).toEqual([]);
   expect(ports(5.5)).toEqual(['fF.O0=7*1']);
   expect(steps.at(4.5, 4)?.ports).toBeUndefined();
+});
+
+it('what is told once more is not what has happened again', () => {
+  const told = (time: number, blocks: object[], more: object = {}) =>
+    line('/diagram', time, '', JSON.stringify({ ms: 0, threads: [], variables: {}, blocks, ...more }));
+  const once = { id: 'f', reacted: 1, ports: [{ port: 'O0', type: 'int', value: '7', count: 1 }] };
+  const whole = new Steps([
+    told(5, [once], { anew: true }),
+    told(7, [once]),
+    told(9, [{ id: 'f', reacted: 2 }]),
+  ]);
+  const lit = (steps: Steps, time: number) => (steps.at(time, 4), [...steps.litAt(time)]);
+  expect(lit(whole, 5)).toEqual(['f']);
+  expect(lit(whole, 7)).toEqual([]);
+  expect(lit(whole, 9)).toEqual(['f']);
+  // A recording that begins in the middle of a program.
+  const later = new Steps([told(5, [once]), told(6, [{ id: 'f', reacted: 2 }])]);
+  expect(lit(later, 5)).toEqual([]);
+  expect(lit(later, 6)).toEqual(['f']);
+  expect([...later.litAt(4)]).toEqual([]);
 });

@@ -36,7 +36,7 @@ interface FlowBlock extends Place {
   caption: string;
   reacted: number;
   ports: Map<string, { type: string; value: string; count: number }>;
-  /** When something was told of it last. */
+  /** When something happened there last; never, as far as it is known. */
   time: number;
 }
 
@@ -48,6 +48,8 @@ export class Steps {
   /** Of each call, by their ids. */
   readonly #blocks = new Map<string, FlowBlock>();
   #last: Record<string, unknown> | undefined;
+  /** Whether counts are known from their beginning. */
+  #isWhole = false;
 
   /** Lines of `/diagram` alone. */
   constructor(private readonly lines: readonly Line[]) {}
@@ -60,6 +62,7 @@ export class Steps {
       this.#next = countUntil(this.lines, since);
       this.#variables.clear();
       this.#blocks.clear();
+      this.#isWhole = false;
       this.#last = undefined;
     }
     for (; this.#next < end; this.#next++) this.#take(this.lines[this.#next]);
@@ -69,7 +72,10 @@ export class Steps {
   /** Blocks of data flow at which something has happened lately, at the time that was asked for last or a later one. */
   litAt(time: number): ReadonlySet<string> {
     const lit = new Set<string>();
-    for (const block of this.#blocks.values()) if ((time - block.time) * 1000 <= SEEN_MS) lit.add(block.id);
+    for (const block of this.#blocks.values()) {
+      const since_ms = (time - block.time) * 1000;
+      if (since_ms >= 0 && since_ms <= SEEN_MS) lit.add(block.id);
+    }
     return lit;
   }
 
@@ -84,25 +90,35 @@ export class Steps {
     this.#last = value;
     if (isObject(value.variables))
       for (const [name, one] of Object.entries(value.variables)) this.#variables.set(name, one);
-    if (value.anew === true) this.#blocks.clear();
+    if (value.anew === true) {
+      this.#blocks.clear();
+      this.#isWhole = true;
+    }
     for (const one of objects(value.blocks)) this.#takeBlock(one, line?.time ?? 0);
   }
 
   #takeBlock(told: Record<string, unknown>, time: number): void {
     const key = `${text(told.id)} ${count(told.instance)}`;
     let block = this.#blocks.get(key);
+    // Of a recording that begins later nobody knows when what it is told of first has happened.
+    let isKnown = true;
     if (!block) {
       const named = { diagram: '', block: '', caption: '' };
-      this.#blocks.set(key, (block = { ...named, id: text(told.id), reacted: 0, ports: new Map(), time }));
+      const unknown = { reacted: 0, ports: new Map(), time: -Infinity };
+      this.#blocks.set(key, (block = { ...named, id: text(told.id), ...unknown }));
+      isKnown = this.#isWhole;
     }
-    block.time = time;
+    let hasMore = count(told.reacted) > block.reacted;
     // Names come only now and then.
     if ('caption' in told) Object.assign(block, placeOf(told), { caption: text(told.caption) });
     block.reacted = Math.max(block.reacted, count(told.reacted));
     for (const one of objects(told.ports)) {
       const token = { type: text(one.type), value: text(one.value), count: count(one.count) };
+      hasMore ||= token.count > (block.ports.get(text(one.port))?.count ?? 0);
       block.ports.set(text(one.port), token);
     }
+    // All is told once more for somebody else who has missed it.
+    if (hasMore && isKnown) block.time = time;
   }
 
   /** What is known of blocks of data flow. */
