@@ -130,9 +130,14 @@ impl Diary {
         }
         let mut blocks = Vec::new();
         while self.bytes > 0
-            && let Some(id) = self.news.pop_front()
+            && let Some(&id) = self.news.front()
         {
-            let text = self.block(program, id, now);
+            let (text, is_named) = self.block(program, id, now);
+            if text.len() > self.bytes && !blocks.is_empty() {
+                break;
+            }
+            self.news.pop_front();
+            self.settle(id, is_named.then_some(now));
             self.bytes = self.bytes.saturating_sub(text.len());
             blocks.push(text);
         }
@@ -147,11 +152,10 @@ impl Diary {
         told
     }
 
-    /// What is new at a block.
-    fn block(&mut self, program: &Program, id: NodeId, now: u32) -> String {
+    /// What is new at a block, and whether its name is told with it.
+    fn block(&self, program: &Program, id: NodeId, now: u32) -> (String, bool) {
         let [from, to] = span(&self.blocks, self.ports.len(), id);
-        let block = &mut self.blocks[id as usize];
-        block.is_news = false;
+        let block = &self.blocks[id as usize];
         let node = program.node(id);
         // Readers compare it.
         let whole = quoted(&node.id, limits::SOURCE_ID_BYTES_MAX);
@@ -160,8 +164,8 @@ impl Diary {
             told = told.plain("instance", node.instance);
         }
         let is_known = |at: u32| now.saturating_sub(at) < limits::DIARY_NAMES_MS;
-        if !block.named_at.is_some_and(is_known) {
-            block.named_at = Some(now);
+        let is_named = !block.named_at.is_some_and(is_known);
+        if is_named {
             let instance = &program.instances[node.instance as usize];
             told = told
                 .text("diagram", &instance.name)
@@ -171,14 +175,26 @@ impl Diary {
         if block.reacted > 0 {
             told = told.plain("reacted", block.reacted);
         }
-        let ports = (0..).zip(&mut self.ports[from..to]);
+        let ports = (0..).zip(&self.ports[from..to]);
         let ports: Vec<String> = ports
             .filter(|(_, output)| output.is_news)
             .map(|(port, output)| output.tell(node, port))
             .collect();
-        match ports.is_empty() {
+        let told = match ports.is_empty() {
             true => told.done(),
             false => told.list("ports", ports).done(),
+        };
+        (told, is_named)
+    }
+
+    /// It is told.
+    fn settle(&mut self, id: NodeId, named_at: Option<u32>) {
+        let [from, to] = span(&self.blocks, self.ports.len(), id);
+        let block = &mut self.blocks[id as usize];
+        block.is_news = false;
+        block.named_at = named_at.or(block.named_at);
+        for output in &mut self.ports[from..to] {
+            output.is_news = false;
         }
     }
 
@@ -222,8 +238,7 @@ impl Trace for Diary {
 }
 
 impl Output {
-    fn tell(&mut self, node: &Node, port: u8) -> String {
-        self.is_news = false;
+    fn tell(&self, node: &Node, port: u8) -> String {
         let told = object().text("port", node.port_name(port));
         let told = match &self.last {
             Last::Nothing => told,

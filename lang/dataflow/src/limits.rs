@@ -108,7 +108,7 @@ pub const TAP_MS: u32 = 5000;
 pub const DIARY_BLOCKS_MAX: usize = 5000;
 /// Bytes that a recording has of that in a millisecond: ten minutes of it are less than a page takes.
 pub const DIARY_BYTES_PER_MS: usize = 20;
-/// The same at once: a line of a recording with variables is no longer than it may be.
+/// The same at once, or one block: a line of a recording with variables is no longer than it may be.
 pub const DIARY_BYTES_MAX: usize = 4 << 10;
 /// Characters of one text in it.
 pub const DIARY_CHARACTERS_MAX: usize = 100;

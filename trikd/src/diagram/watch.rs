@@ -109,7 +109,7 @@ impl Watch {
         let mut variables = object(machine.variables());
         // A line of a recording has no room for both: they take turns.
         let is_long = variables.len() > limits::WATCH_BESIDE_BYTES;
-        let is_turn_of_blocks = is_long && has_news && self.had_variables;
+        let is_turn_of_blocks = is_long && has_news && self.had_variables && errors.is_empty();
         if is_turn_of_blocks {
             "{}".clone_into(&mut variables);
         }
@@ -121,8 +121,9 @@ impl Watch {
             .plain("ms", machine.now())
             .list("threads", [])
             .plain("variables", variables);
+        // Nor for errors and blocks.
         if let Some(diary) = &mut diary
-            && (is_turn_of_blocks || !is_long)
+            && (is_turn_of_blocks || !is_long && errors.is_empty())
         {
             json = diary.tell(json, machine.program(), now);
         }
@@ -157,7 +158,8 @@ impl Watch {
                 diary.is_last();
             }
             self.report_flow(machine, diary.as_deref_mut(), now, host)?;
-            if !diary.as_ref().is_some_and(|diary| diary.has_news()) {
+            let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
+            if !has_news && self.had_variables {
                 break;
             }
         }

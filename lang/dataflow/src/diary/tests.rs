@@ -133,3 +133,31 @@ fn long_tokens_are_cut_and_blocks_that_are_too_many_are_counted_together() {
     assert_eq!(third, "{blocks:[],others:{reacted:1,tokens:1}}");
     assert!(!diary.has_news());
 }
+
+#[test]
+fn a_block_that_has_no_room_in_a_line_comes_in_the_next_one() {
+    let texts = "{IO0=1 | IO1=1 | IO2=1 | IO3=1 | IO4=1 | IO5=1}";
+    let lines: Vec<String> = (0..10)
+        .map(|at| format!("F{at} Text programming {texts}"))
+        .collect();
+    let program = program(project(vec![diagram("main", Main, &lines.join("\n"))]));
+    let (mut diary, port) = (Diary::new(&program), output(&program));
+    let text = Value::text("\u{43f}".repeat(100));
+    for node in 0..10 {
+        for output in 0..6 {
+            diary.sent(0, node, port + 2 * output, &text);
+        }
+    }
+    let mut seen = 0;
+    for turn in 1..=10 {
+        diary.is_last();
+        let line = told(&mut diary, &program, turn);
+        assert!(line.len() < limits::DIARY_BYTES_MAX + 100, "{}", line.len());
+        assert!(line.contains("{id:"), "{line}");
+        seen += line.matches(",count:1}").count();
+        if !diary.has_news() {
+            break;
+        }
+    }
+    assert_eq!(seen, 60);
+}
