@@ -22,7 +22,7 @@ pub(crate) struct ShowArgs {
     /// The diagram, a file NAME.qrs, or a data-flow program as text, a file NAME.flow.
     pub file: PathBuf,
     /// Write a picture into a new file; - is standard output.
-    #[arg(long, value_name = "OUT.svg")]
+    #[arg(long, value_name = "OUT.svg", group = "written")]
     pub svg: Option<PathBuf>,
     /// Print the program as sentences, as without this option.
     #[arg(long, conflicts_with = "svg")]
@@ -31,7 +31,7 @@ pub(crate) struct ShowArgs {
     #[arg(long, conflicts_with_all = ["svg", "text"])]
     pub source: bool,
     /// Write a data-flow program as a save, which the editor of the language opens, into a new file; - is standard output.
-    #[arg(long, value_name = "OUT.qrs", conflicts_with_all = ["svg", "text", "source", "all", "diagram"])]
+    #[arg(long, value_name = "OUT.qrs", group = "written", conflicts_with_all = ["svg", "text", "source", "all", "diagram"])]
     pub save: Option<PathBuf>,
     /// Say also the properties of a data-flow program that have their defaults.
     #[arg(long, conflicts_with_all = ["svg", "source"])]
@@ -41,7 +41,7 @@ pub(crate) struct ShowArgs {
     #[arg(long, value_name = "NAME")]
     pub diagram: Option<String>,
     /// Overwrite OUT.svg or OUT.qrs if it exists.
-    #[arg(long)]
+    #[arg(long, requires = "written")]
     pub force: bool,
     /// Language of sentences and messages: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
