@@ -26,6 +26,8 @@ pub const DELIVERIES_MAX: usize = 1_000_000;
 pub const DELIVERIES_MIN: usize = 16;
 /// Reactions of blocks within one instant.
 pub const FIRINGS_MAX: u32 = 10_000;
+/// Edges that are looked at to count the reactions of the first instant; after that nothing is said of them.
+pub const INSTANT_LOOKS_MAX: usize = 2_000_000;
 /// Items of a list that is a token.
 pub const ITEMS_MAX: usize = 4096;
 /// Bytes of a text that is a token.

@@ -21,23 +21,37 @@ fn onward(node: &Node, port: u8) -> &[Target] {
     }
 }
 
-/// Reactions of a program without a cycle that certainly happen at its start.
+/// Reactions of a program without a cycle that certainly happen at its start. They are counted before they wait for their
+/// turn, so what waits is never more than what there is room for.
 pub(super) fn look(program: &Program, found: &mut Found) {
-    let starts = program.instances.first().map(|main| &main.starts);
-    let mut waiting: VecDeque<Target> = starts.into_iter().flatten().copied().collect();
-    let mut count = 0;
-    while let Some(to) = waiting.pop_front() {
-        let node = program.node(to.node);
-        // One that waits for several tokens may wait for ever.
-        if !node.queues.is_empty() && node.data & (1 << to.port) != 0 {
-            continue;
+    let Some(main) = program.instances.first() else {
+        return;
+    };
+    let mut waiting: VecDeque<Target> = VecDeque::new();
+    let mut targets: &[Target] = &main.starts;
+    let (mut count, mut looks) = (0, 0);
+    loop {
+        for to in targets {
+            looks += 1;
+            if looks > limits::INSTANT_LOOKS_MAX {
+                return;
+            }
+            let node = program.node(to.node);
+            // One that waits for several tokens may wait for ever.
+            if !node.queues.is_empty() && node.data & (1 << to.port) != 0 {
+                continue;
+            }
+            count += 1;
+            if count > limits::FIRINGS_MAX {
+                let place = program.place(to.node);
+                found.warn(place, words::busy_instant(limits::FIRINGS_MAX));
+                return;
+            }
+            waiting.push_back(*to);
         }
-        count += 1;
-        if count > limits::FIRINGS_MAX {
-            let place = program.place(to.node);
-            found.warn(place, words::busy_instant(limits::FIRINGS_MAX));
+        let Some(to) = waiting.pop_front() else {
             return;
-        }
-        waiting.extend(onward(node, to.port));
+        };
+        targets = onward(program.node(to.node), to.port);
     }
 }

@@ -77,6 +77,49 @@ fn a_long_chain_in_one_instant_is_told_and_is_no_cycle() {
     );
 }
 
+/// An edge between ports by their names.
+fn edge(diagram: &mut crate::project::Diagram, from: (usize, &str), to: (usize, &str)) {
+    let end = |(block, port): (usize, &str)| {
+        let row = diagram.blocks[block].row.expect("a row");
+        let port = i32::from(row.port(port).expect("a port"));
+        Some(End { block, port })
+    };
+    let (from, to) = (end(from), end(to));
+    diagram.edges.push(crate::project::Edge {
+        id: format!("qrm:/edge/{}", diagram.edges.len()),
+        from,
+        to,
+        policy: None,
+        capacity: None,
+        path: Vec::new(),
+    });
+}
+
+/// One token becomes 5000, and each of those 90,000: no more of them wait than there is room for.
+#[test]
+fn an_instant_that_grows_without_end_is_told_before_it_is_gone_through() {
+    const MIDDLE: usize = 5000;
+    let text = format!(
+        "G Value generator\nV Value generator\n{}{}",
+        blocks(MIDDLE, "Value generator"),
+        blocks(90_000, "Say {text=a}")
+    );
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    for at in 2..2 + MIDDLE {
+        edge(&mut main, (0, "OUT"), (at, "CF_IN"));
+        edge(&mut main, (at, "OUT"), (1, "CF_IN"));
+    }
+    for at in 2 + MIDDLE..main.blocks.len() {
+        edge(&mut main, (1, "OUT"), (at, "CF_IN"));
+    }
+    assert_eq!(
+        told_of(&project(vec![main])),
+        [
+            "warning: main: Value generator 'V': more than 10000 reactions of blocks come in one instant, which is all that there is room for: let some of them wait"
+        ]
+    );
+}
+
 #[test]
 fn a_constant_is_a_token_and_no_longer_than_one() {
     let list = |items: usize| {
