@@ -30,10 +30,12 @@ pub(super) fn look(program: &Program, arrivals: &Arrivals, found: &mut Found) {
 /// What can come to a block if something comes to all that is connected.
 fn all_that_comes(program: &Program, id: NodeId) -> u16 {
     let node = program.node(id);
-    match (&node.op, node.linked) {
-        (Op::Flow(Flow::InPort), _) => FED,
-        (_, 0) => node.row.control().map_or(0, |port| 1 << port),
-        (_, linked) => linked,
+    match &node.op {
+        Op::Flow(Flow::InPort) => FED,
+        Op::Flow(_) | Op::Source(_) | Op::Act(_) => match node.linked {
+            0 => node.row.control().map_or(0, |port| 1 << port),
+            linked => linked,
+        },
     }
 }
 
@@ -98,7 +100,9 @@ fn outputs(program: &Program, arrivals: &Arrivals, id: NodeId, found: &mut Found
             Op::Flow(Flow::Call(instance)) => {
                 words::no_out_port(name, &program.instances[*instance as usize].name)
             }
-            Op::Flow(Flow::Wait { .. }) if node.is_linked(0) => words::nothing_held(),
+            Op::Flow(Flow::Wait { .. }) if node.linked == 0 || node.is_linked(0) => {
+                words::nothing_held()
+            }
             // Told of as a whole, or where its flags are.
             Op::Flow(_) | Op::Source(_) | Op::Act(_) => continue,
         };

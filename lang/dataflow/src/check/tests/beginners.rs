@@ -92,6 +92,10 @@ fn outputs_that_never_give_anything_are_told_with_the_reason() {
             "warning: main: Wait and send 'W': 'OUT': nothing ever comes from OUT, where only what came to DATA leaves: draw the edge from CF_OUT",
         ),
         (
+            "W Wait and send\nM Motors\nW.OUT > M.CF_IN",
+            "warning: main: Wait and send 'W': 'OUT': nothing ever comes from OUT, where only what came to DATA leaves: draw the edge from CF_OUT",
+        ),
+        (
             "A Sensor\nP Text on screen\nA.OUT > P.TEXT",
             "warning: main: Text on screen 'P': nothing starts it, because only parameters of it are connected: lead an edge to CF_IN or COORDS",
         ),
