@@ -409,9 +409,6 @@ impl<'a> Inference<'a> {
         {
             return Of::List(u16::try_from(fields.len()).unwrap_or(0));
         }
-        if let Part::Text(text) = part {
-            return Of::of_value(&Value::text(text.clone()));
-        }
         Of::of_type(source.type_of(last, &self.names))
     }
 
