@@ -10,7 +10,7 @@ use crate::limits;
 use crate::program::{Camera, NodeId, Op, Read, Source};
 use crate::sensors;
 use lang_diagram::brick::{Brick, Command};
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Device, Port, Sort};
 use lang_expr::reserved::SensorIndex;
 use lang_expr::{Outside, Value};
 use lang_text::problem::Problem;
@@ -118,6 +118,26 @@ impl Outside for Robot<'_> {
     }
 }
 
+/// Whether the camera tells what a sensor variable says.
+fn is_of_camera(sensor: SensorIndex) -> bool {
+    let port = match sensors::part(sensor) {
+        Some((port, _)) => Some(port),
+        None => Port::shown_by(sensors::name(sensor)),
+    };
+    port.is_some_and(|port| match port.device() {
+        Device::LineSensor | Device::ColorSensor | Device::ObjectSensor(_) => true,
+        Device::Motor
+        | Device::Servo
+        | Device::Encoder
+        | Device::Plugged
+        | Device::Gyroscope
+        | Device::Accelerometer
+        | Device::Lidar
+        | Device::Button(_)
+        | Device::Gamepad(_) => false,
+    })
+}
+
 /// What a block reads, by the name that people know.
 pub(super) fn device(source: &Source) -> &'static str {
     match source {
@@ -157,16 +177,18 @@ impl Machine {
     }
 
     /// Sensors that the robot does not have and that blocks ask for later are told before anything moves: the first such
-    /// block that starts ends the program. Those of blocks that start now end it now.
+    /// block that starts ends the program. Those of blocks that start now end it now. The camera is not asked: that would
+    /// start it, and it says nothing before its first picture.
     pub(super) fn tell_lacking(&mut self, env: &mut Env<'_>) {
         let main = env.program.instances.first();
         let starts = main.map_or(&[][..], |main| &main.starts);
         for (id, node) in (0..).zip(&env.program.nodes) {
-            let Op::Source(source @ Source::Sensor(_)) = &node.op else {
+            let Op::Source(source @ Source::Sensor(sensor)) = &node.op else {
                 continue;
             };
-            let starts_now = starts.iter().any(|start| start.node == id);
-            if starts_now || self.is_readable(source, env) {
+            // They are in the order of the nodes.
+            let starts_now = starts.binary_search_by_key(&id, |start| start.node).is_ok();
+            if starts_now || is_of_camera(*sensor) || self.is_readable(source, env) {
                 continue;
             }
             if self.warnings.len() < lang_text::limits::PROBLEMS {

@@ -11,6 +11,7 @@ use super::*;
 use crate::blocks;
 use crate::lower::lower;
 use crate::project::{DiagramKind, Project};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// A robot whose readings a test writes.
@@ -21,6 +22,8 @@ pub(super) struct Script {
     pub mail: VecDeque<(Option<i32>, String)>,
     pub files: BTreeMap<String, String>,
     pub dice: i32,
+    /// Ports that were asked.
+    pub asked: BTreeSet<&'static str>,
 }
 
 impl Brick for Script {
@@ -29,10 +32,12 @@ impl Brick for Script {
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {
+        self.asked.insert(port.name());
         self.readings.get(port.name())?.first().copied()
     }
 
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        self.asked.insert(port.name());
         let found = self.readings.get(port.name());
         found.is_some_and(|found| {
             into.extend(found);

@@ -43,3 +43,48 @@ fn a_missing_sensor_that_is_asked_later_is_told_before_anything_moves() {
     assert_eq!(machine.status(), Status::Running);
     assert_eq!(robot.commands.last().map(String::as_str), Some("say \"5\""));
 }
+
+#[test]
+fn the_camera_is_not_asked_before_a_block_asks_it() {
+    for sensor in [
+        "lineSensor",
+        "colorSensor",
+        "colorSensorR",
+        "colorSensorG",
+        "colorSensorB",
+        "objectSensorX",
+        "objectSensorY",
+        "objectSensorSize",
+    ] {
+        let text = format!(
+            "W Wait and send {{time=100}}\nA Sensor {{VarName={sensor}}}\nS Say\nW.CF_OUT > A.CF_IN\nA.OUT > S.DATA"
+        );
+        let main = diagram("main", DiagramKind::Main, &text);
+        let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+        for now in (0..100).step_by(10) {
+            machine.step(now, &mut robot, &mut Deaf);
+        }
+        assert_eq!(machine.warnings(), [], "{sensor}");
+        assert!(robot.asked.is_empty(), "{sensor}: {:?}", robot.asked);
+        machine.step(100, &mut robot, &mut Deaf);
+        assert_eq!(robot.asked.len(), 1, "{sensor}: {:?}", robot.asked);
+        assert_eq!(machine.errors().len(), 1, "{sensor}");
+    }
+}
+
+#[test]
+fn many_sensors_that_begin_at_once_are_told_by_the_first_one() {
+    let mut main = diagram("main", DiagramKind::Main, "A Sensor");
+    main.blocks = (0..200_000)
+        .map(|at| {
+            let mut block = main.blocks[0].clone();
+            // Texts of all blocks have a limit of their own.
+            block.id = format!("{at}");
+            block
+        })
+        .collect();
+    let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+    machine.step(0, &mut robot, &mut Deaf);
+    assert_eq!(machine.warnings(), []);
+    assert_eq!(machine.errors().len(), 1);
+}
