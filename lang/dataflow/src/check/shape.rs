@@ -12,7 +12,7 @@ use crate::blocks::Direction;
 use crate::limits;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};
 use lang_diagram::ports::{Port, Sort};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 pub(super) fn look(program: &Program, arrivals: &Arrivals, found: &mut Found) {
     let graph = Graph::new(program);
@@ -35,8 +35,12 @@ pub(super) fn look(program: &Program, arrivals: &Arrivals, found: &mut Found) {
 
 /// Where tokens go from node to node, through calls as well.
 pub(super) struct Graph {
+    /// Behind the nodes stands one for each output of a call that a body has, from which the edges of the call go on: else
+    /// each output port of the body would have all of them.
     next: Vec<Vec<NodeId>>,
     previous: Vec<Vec<NodeId>>,
+    /// How many nodes the program has.
+    count: usize,
 }
 
 impl Graph {
@@ -53,12 +57,15 @@ impl Graph {
             // What leaves a body leaves its call, which is not what starts it: a call is two nodes in truth.
             next[caller as usize].extend(into.chain(starts));
         }
-        for (id, node) in (0..).zip(&program.nodes) {
+        let mut outputs: HashMap<(NodeId, u8), NodeId> = HashMap::new();
+        for (id, node) in (0usize..).zip(&program.nodes) {
             if let Op::Flow(Flow::OutPort(Some(Target { node: call, port }))) = node.op {
-                let out = program.node(call).outs.get(usize::from(port));
-                let targets = out.into_iter().flatten().map(|to| to.node);
-                let of_node: &mut Vec<NodeId> = &mut next[id as usize];
-                of_node.extend(targets);
+                let output = *outputs.entry((call, port)).or_insert_with(|| {
+                    let out = program.node(call).outs.get(usize::from(port));
+                    next.push(out.into_iter().flatten().map(|to| to.node).collect());
+                    next.len() as NodeId - 1
+                });
+                next[id].push(output);
             }
         }
         // Edges out of a call begin at the output ports of its body.
@@ -76,7 +83,11 @@ impl Graph {
                 of_target.push(id);
             }
         }
-        Self { next, previous }
+        Self {
+            next,
+            previous,
+            count: program.nodes.len(),
+        }
     }
 
     /// How many ways there are.
@@ -86,7 +97,7 @@ impl Graph {
 
     /// All nodes that tokens of these reach, these included.
     pub(super) fn reached(&self, from: impl IntoIterator<Item = NodeId>) -> HashSet<NodeId> {
-        walk(&self.next, from, |_| true)
+        self.walk(&self.next, from, |_| true)
     }
 
     /// The same, but beyond a node only if `passes` holds for it.
@@ -95,28 +106,35 @@ impl Graph {
         from: impl IntoIterator<Item = NodeId>,
         passes: impl Fn(NodeId) -> bool,
     ) -> HashSet<NodeId> {
-        walk(&self.next, from, passes)
+        self.walk(&self.next, from, passes)
     }
 
     /// All nodes whose tokens reach these, these included.
     pub(super) fn sources(&self, of: impl IntoIterator<Item = NodeId>) -> HashSet<NodeId> {
-        walk(&self.previous, of, |_| true)
+        self.walk(&self.previous, of, |_| true)
     }
-}
 
-fn walk(
-    ways: &[Vec<NodeId>],
-    from: impl IntoIterator<Item = NodeId>,
-    passes: impl Fn(NodeId) -> bool,
-) -> HashSet<NodeId> {
-    let mut reached = HashSet::new();
-    let mut waiting: Vec<NodeId> = from.into_iter().collect();
-    while let Some(id) = waiting.pop() {
-        if reached.insert(id) && passes(id) {
-            waiting.extend(&ways[id as usize]);
-        }
+    /// Whether it is a node of the program, and not an output of a call.
+    fn is_node(&self, id: NodeId) -> bool {
+        (id as usize) < self.count
     }
-    reached
+
+    fn walk(
+        &self,
+        ways: &[Vec<NodeId>],
+        from: impl IntoIterator<Item = NodeId>,
+        passes: impl Fn(NodeId) -> bool,
+    ) -> HashSet<NodeId> {
+        let mut reached = HashSet::new();
+        let mut waiting: Vec<NodeId> = from.into_iter().collect();
+        while let Some(id) = waiting.pop() {
+            if reached.insert(id) && (!self.is_node(id) || passes(id)) {
+                waiting.extend(&ways[id as usize]);
+            }
+        }
+        reached.retain(|&id| self.is_node(id));
+        reached
+    }
 }
 
 /// Whether tokens leave a node later than they come.
@@ -154,7 +172,12 @@ pub(crate) fn on_cycles(program: &Program) -> HashSet<NodeId> {
 
 /// Cycles without a node that delays.
 fn cycles(program: &Program, graph: &Graph) -> Vec<Vec<usize>> {
-    components::cycles(&graph.next, |id| delays(&program.nodes[id].op))
+    let delays = |id: usize| program.nodes.get(id).is_some_and(|node| delays(&node.op));
+    let mut cycles = components::cycles(&graph.next, delays);
+    for cycle in &mut cycles {
+        cycle.retain(|&id| id < graph.count);
+    }
+    cycles
 }
 
 fn tell_cycle(program: &Program, mut component: Vec<usize>, found: &mut Found) {

@@ -112,7 +112,8 @@ fn outputs(program: &Program, arrivals: &Arrivals, id: NodeId, found: &mut Found
 
 /// Who is to blame for it that no token comes to a block.
 struct Blame {
-    /// By node: nodes from which nothing comes.
+    /// By node: nodes from which nothing comes. Behind the nodes stands one for each output of a call that leads somewhere,
+    /// which waits for the output ports of its subprogram: else each edge would have all of them.
     on: Vec<Vec<NodeId>>,
     /// By node: whether it waits for something that is told elsewhere, or that nobody is sure of.
     is_told: Vec<bool>,
@@ -125,12 +126,7 @@ impl Blame {
             on: vec![Vec::new(); count],
             is_told: vec![false; count],
         };
-        let mut leave: HashMap<(NodeId, u8), Vec<NodeId>> = HashMap::new();
-        for (id, node) in (0..).zip(&program.nodes) {
-            if let Op::Flow(Flow::OutPort(Some(Target { node: call, port }))) = node.op {
-                leave.entry((call, port)).or_default().push(id);
-            }
-        }
+        let leave = all.of_calls(program);
         for id in 0..count as NodeId {
             let never = never_gives(program, arrivals, id);
             let is_silent = all_that_comes(program, id) == 0;
@@ -143,7 +139,7 @@ impl Blame {
                 if is_silent || never & (1 << port) != 0 {
                     all.is_told[waits] = true;
                 } else if is_call {
-                    all.on[waits].extend(leave.get(&(id, port)).into_iter().flatten());
+                    all.on[waits].extend(leave.get(&(id, port)));
                 } else {
                     all.on[waits].push(id);
                 }
@@ -151,6 +147,22 @@ impl Blame {
         }
         all.of_bodies(program, arrivals);
         all
+    }
+
+    /// Outputs of calls wait for the output ports of their subprograms; which node stands for each of them.
+    fn of_calls(&mut self, program: &Program) -> HashMap<(NodeId, u8), NodeId> {
+        let mut leave = HashMap::new();
+        for (id, node) in (0..).zip(&program.nodes) {
+            if let Op::Flow(Flow::OutPort(Some(Target { node: call, port }))) = node.op {
+                let output = *leave.entry((call, port)).or_insert_with(|| {
+                    self.on.push(Vec::new());
+                    self.is_told.push(false);
+                    self.on.len() as NodeId - 1
+                });
+                self.on[output as usize].push(id);
+            }
+        }
+        leave
     }
 
     /// What a subprogram waits for comes from its call.
@@ -181,7 +193,7 @@ impl Blame {
 /// Rings of blocks that wait for each other, and for nothing else.
 fn rings(program: &Program, arrivals: &Arrivals, found: &mut Found) {
     let blame = Blame::of(program, arrivals);
-    let mut is_in = vec![false; program.nodes.len()];
+    let mut is_in = vec![false; blame.on.len()];
     for mut ring in components::cycles(&blame.on, |_| false) {
         ring.iter().for_each(|&id| is_in[id] = true);
         let is_cause = ring.iter().all(|&id| {
@@ -190,6 +202,7 @@ fn rings(program: &Program, arrivals: &Arrivals, found: &mut Found) {
         });
         ring.iter().for_each(|&id| is_in[id] = false);
         if is_cause {
+            ring.retain(|&id| id < program.nodes.len());
             ring.sort_unstable();
             tell_ring(program, arrivals, &ring, found);
         }

@@ -390,6 +390,29 @@ fn what_an_edge_says_of_a_queue_that_is_none_is_told() {
 }
 
 #[test]
+fn a_ring_through_several_output_ports_of_one_name_is_told_once() {
+    let found = calling(
+        "C User block of body\nW Wait and send\nC.O0 > W.DATA\nW.OUT > C.I0",
+        "body",
+        "I Input port\nF Text programming {IO0=I0}\nO Output port\nP Output port\nI.OUT > F.I0\nF.O0 > O.DATA\nF.O0 > P.DATA",
+    );
+    one(
+        &found,
+        "warning: main: User block 'C': 'I0': nothing starts it: these blocks only lead to each other",
+    );
+    // Without a wait on the way it is a cycle, and names blocks only.
+    let found = calling(
+        "V Value generator\nC User block of body\nF Text programming {synch=false | IO0=I0}\nV.OUT > F.I0\nF.O0 > C.I0\nC.O0 > F.I0",
+        "body",
+        "I Input port\nO Output port\nP Output port\nI.OUT > O.DATA\nI.OUT > P.DATA",
+    );
+    one(
+        &found,
+        "warning: main: User block 'C': tokens can run around within one instant (User block 'C', Text programming 'F', Input port 'I', Output port 'O', Output port 'P'):",
+    );
+}
+
+#[test]
 fn many_rings_and_long_ones_cost_what_they_are() {
     let mut text = String::new();
     let mut edges = String::new();

@@ -120,6 +120,39 @@ fn an_instant_that_grows_without_end_is_told_before_it_is_gone_through() {
     );
 }
 
+/// Each edge of the call stands for all output ports of its name: together they would be billions.
+#[test]
+fn many_output_ports_and_many_edges_of_a_call_cost_what_they_are() {
+    let text = format!("C User block of body\n{}", blocks(49_000, "Say {text=a}"));
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    for at in 1..main.blocks.len() {
+        edge(&mut main, (0, "O0"), (at, "CF_IN"));
+    }
+    let body = blocks(50_000, "Output port");
+    let body = diagram("body", DiagramKind::Subprogram, &body);
+    let told = told_of(&project(vec![main, body]));
+    assert!(!told.is_empty());
+    for one in told {
+        assert!(one.starts_with("warning: body: Output port 'b"), "{one}");
+    }
+}
+
+#[test]
+fn many_rings_of_two_cost_what_they_are() {
+    let text = blocks(20_000, "Wait and send");
+    let mut main = diagram("main", DiagramKind::Main, &text);
+    for at in (0..main.blocks.len()).step_by(2) {
+        edge(&mut main, (at, "CF_OUT"), (at + 1, "CF_IN"));
+        edge(&mut main, (at + 1, "CF_OUT"), (at, "CF_IN"));
+    }
+    let told = told_of(&project(vec![main]));
+    assert!(!told.is_empty());
+    for (at, one) in told.iter().enumerate() {
+        let wanted = format!("warning: main: Wait and send 'b{}': 'CF_IN'", 2 * at);
+        assert!(one.starts_with(&wanted), "{wanted}: {one}");
+    }
+}
+
 #[test]
 fn a_constant_is_a_token_and_no_longer_than_one() {
     let list = |items: usize| {
