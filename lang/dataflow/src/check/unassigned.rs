@@ -13,13 +13,15 @@ use lang_expr::names::is_own;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Names, Source};
 use lang_text::near;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Names that nothing gives a value.
 #[derive(Debug, Default)]
 pub(super) struct Unassigned {
     /// How many variables were compared with names that nobody knows.
     compared: usize,
+    /// What was probably meant, by such a name and the own names of its block: a name may stand at many places.
+    meant: HashMap<(String, &'static [&'static str]), Option<String>>,
 }
 
 impl Unassigned {
@@ -47,10 +49,7 @@ impl Unassigned {
             }
             let words = match called.contains(&id) {
                 true => words::no_function(name),
-                false => {
-                    let all = self.comparable(text, variables);
-                    words::never_assigned(name, near::nearest(name, all))
-                }
+                false => words::never_assigned(name, self.meant(name, text, variables)),
             };
             let place = program.property_place(text.node, text.property, Some(*at));
             // Told once, however many instances the block has.
@@ -58,6 +57,17 @@ impl Unassigned {
             is_any = true;
         }
         is_any
+    }
+
+    /// What was probably meant by a name that nobody knows.
+    fn meant(&mut self, name: &str, text: &Text, variables: &Variables) -> Option<&str> {
+        let key = (name.to_owned(), text.own);
+        if !self.meant.contains_key(&key) {
+            let near = near::nearest(name, self.comparable(text, variables));
+            let near = near.map(str::to_owned);
+            self.meant.insert(key.clone(), near);
+        }
+        self.meant.get(&key)?.as_deref()
     }
 
     /// What a name may be meant for.

@@ -140,3 +140,19 @@ fn many_blocks_that_give_one_variable_cost_what_they_are() {
         "warning: main: Variable 'V9999': more than 10000 reactions",
     );
 }
+
+#[test]
+fn a_name_that_stands_at_many_places_is_compared_once() {
+    let variables: Vec<String> = (0..100).map(|at| format!("speed{at} = 1")).collect();
+    let found = told(&format!(
+        "K Variable {{variable={}; Kp = 2}}\nA Sensor\nF Text programming {{IO0=I0{} + kp}}\nS Say\nA.OUT > F.I0\nF.O0 > S.DATA",
+        variables.join("; "),
+        " + zzz".repeat(60),
+    ));
+    assert!(
+        found
+            .iter()
+            .any(|one| one.ends_with("kp is never given a value; did you mean 'Kp'?")),
+        "{found:#?}"
+    );
+}
