@@ -212,6 +212,7 @@ fn edge(choices: &mut Choices<'_>, blocks: &[Block], (at, place): (usize, usize)
         policy,
         capacity: policy.map(|_| u16::from(choices.byte())),
         path: Vec::new(),
+        gone: None,
     }
 }
 

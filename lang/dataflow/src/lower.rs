@@ -9,7 +9,7 @@ mod unused;
 use properties::port_of_call;
 pub(crate) use properties::{DATA, INPUTS, chosen, color};
 
-use crate::blocks::{CONTROL_OUT, Direction, Does, Kind, Row};
+use crate::blocks::{self, CONTROL_OUT, Direction, Does, Kind, Row};
 use crate::limits;
 use crate::program::{
     Act, Flow, Gathers, Instance, Node, NodeId, Op, Program, Queue, Target, Text,
@@ -89,6 +89,18 @@ impl At<'_> {
     }
 }
 
+/// What is wrong with a block that the language does not have.
+fn unknown(block: &Block) -> Words {
+    let element = block.element.as_str();
+    match blocks::is_painter(element) {
+        true => {
+            let shape = block.properties.get(blocks::SHAPE);
+            words::no_painter(element, shape.map(String::as_str))
+        }
+        false => words::unknown_element(element),
+    }
+}
+
 fn place(diagram: &Diagram, block: &Block) -> Place {
     let shown = block.row.map_or(block.element.as_str(), |row| row.shown);
     Place {
@@ -142,10 +154,7 @@ impl<'a> Lowering<'a> {
     fn look_at(&mut self, diagram: &'a Diagram) {
         for block in &diagram.blocks {
             let Some(row) = block.row else {
-                self.error(
-                    place(diagram, block),
-                    words::unknown_element(&block.element),
-                );
+                self.error(place(diagram, block), unknown(block));
                 continue;
             };
             let is_port = matches!(row.does, Does::InPort | Does::OutPort);
@@ -159,7 +168,11 @@ impl<'a> Lowering<'a> {
         let mut twins = std::collections::HashSet::new();
         for edge in &diagram.edges {
             let (Some(from), Some(to)) = (edge.from, edge.to) else {
-                self.error(edge_place(diagram, edge), words::dangling());
+                let words = match edge.gone {
+                    Some((name, row)) => words::gone_port(name, row),
+                    None => words::dangling(),
+                };
+                self.error(edge_place(diagram, edge), words);
                 continue;
             };
             let ends = [(from, Direction::Out), (to, Direction::In)];

@@ -120,6 +120,8 @@ pub struct Edge {
     pub capacity: Option<u16>,
     /// Corners on the canvas, in pixels.
     pub path: Vec<(f64, f64)>,
+    /// The port of an old version that a loose end was at, and its block, which has none of that name now.
+    pub gone: Option<(&'static str, &'static Row)>,
 }
 
 impl Project {

@@ -191,10 +191,6 @@ impl<'a> Reader<'a> {
         let logical = self.logical(object);
         let shape = logical.and_then(|logical| logical.property(blocks::SHAPE));
         let Some((row, former)) = blocks::find_former(element, shape) else {
-            if blocks::is_painter(element) && logical.is_some() {
-                let words = words::no_painter(element, shape);
-                self.report(object, diagram, Severity::Error, words);
-            }
             return (None, None);
         };
         if self.former.insert((former.element, former.now)) {
@@ -247,6 +243,12 @@ impl<'a> Reader<'a> {
         blocks: &[Block],
         numbering: &[Numbering],
     ) -> Edge {
+        let ends = [("from", "fromPort"), ("to", "toPort")].into_iter();
+        let mut lost = ends.filter_map(|(key, port)| {
+            let block = *places_of.get(object.property(key)?)?;
+            let number = number(object.property(port).unwrap_or_default());
+            gone(blocks[block].row, numbering[block], number)
+        });
         let end = |key, port| {
             let id = object.property(key).filter(|id| objects::is_object(id))?;
             let block = *places_of.get(id)?;
@@ -275,16 +277,8 @@ impl<'a> Reader<'a> {
                 .iter()
                 .map(|corner| (corner.0 + x, corner.1 + y))
                 .collect(),
+            gone: lost.next(),
         };
-        for (key, port) in [("from", "fromPort"), ("to", "toPort")] {
-            let number = number(object.property(port).unwrap_or_default());
-            let block = object.property(key).and_then(|id| places_of.get(id));
-            let gone = block.and_then(|&at| gone(blocks[at].row, numbering[at], number));
-            if let Some((name, row)) = gone {
-                let words = words::gone_port(name, row);
-                self.report(object, diagram, Severity::Error, words);
-            }
-        }
         if let Some(word) = text(POLICY).filter(|_| policy.is_none()) {
             self.warn(object, diagram, words::unknown_policy(word));
         }

@@ -62,6 +62,7 @@ pub(crate) fn diagram(name: &str, kind: DiagramKind, text: &str) -> Diagram {
             policy: None,
             capacity: None,
             path: Vec::new(),
+            gone: None,
         };
         diagram.edges.push(edge);
     }

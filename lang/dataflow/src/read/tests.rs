@@ -157,10 +157,21 @@ fn a_former_painter_is_the_block_of_its_shape_or_says_what_to_draw() {
         let (read, _) = painted(shape, block, "[1, 2, 3]", false);
         assert!(crate::check::check(&read).has_errors(), "{shape}");
     }
-    let (read, told) = painted("star", "Draw line", "[1, 2, 3, 4]", false);
-    assert!(read.diagrams[0].blocks[1].row.is_none());
-    let told = told.join("\n");
+    // Each is told once, where it is.
+    let told_of = |shape: &str, config: bool| {
+        let (read, told) = painted(shape, "Draw line", "[1, 2, 3, 4]", config);
+        let named = |one: &String| one.contains("had before 2016-07-12");
+        assert!(told.iter().all(named), "{told:?}");
+        let checked = crate::check::check(&read);
+        assert!(checked.has_errors());
+        let problems = checked.problems.iter().map(ToString::to_string);
+        let problems: Vec<String> = problems.collect();
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        problems.concat()
+    };
+    let told = told_of("star", false);
     for part in [
+        "main: ShapePainter 'P': ",
         "'ShapePainter'",
         "'star'",
         "line - 'Draw line'",
@@ -168,8 +179,7 @@ fn a_former_painter_is_the_block_of_its_shape_or_says_what_to_draw() {
     ] {
         assert!(told.contains(part), "{part}: {told}");
     }
-    let (_, told) = painted("line", "Draw line", "[1, 2, 3, 4]", true);
-    let told = told.join("\n");
+    let told = told_of("line", true);
     assert!(
         told.contains("the port CONFIG is of an old version"),
         "{told}"

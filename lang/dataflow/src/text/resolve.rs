@@ -259,6 +259,7 @@ impl Resolver<'_> {
             policy: edge.policy,
             capacity: edge.capacity,
             path: edge.path,
+            gone: None,
         }
     }
 

@@ -92,6 +92,7 @@ fn edge(diagram: &mut crate::project::Diagram, from: (usize, &str), to: (usize, 
         policy: None,
         capacity: None,
         path: Vec::new(),
+        gone: None,
     });
 }
 

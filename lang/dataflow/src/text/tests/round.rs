@@ -106,6 +106,7 @@ fn edge() -> impl Strategy<Value = Edge> {
         policy,
         capacity,
         path,
+        gone: None,
     })
 }
 
