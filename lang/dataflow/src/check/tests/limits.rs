@@ -121,6 +121,39 @@ fn an_instant_that_grows_without_end_is_told_before_it_is_gone_through() {
     );
 }
 
+/// Edges into queues let nothing react, and there may be many of them.
+#[test]
+fn edges_of_an_instant_are_looked_at_up_to_a_bound() {
+    const MIDDLE: usize = 600;
+    const SAY: usize = 20;
+    let busy = |queues: usize| {
+        let text = format!(
+            "G Value generator\nV Value generator\n{}",
+            blocks(MIDDLE, "Value generator")
+        );
+        let mut main = diagram("main", DiagramKind::Main, &text);
+        let say = diagram("say", DiagramKind::Main, &blocks(SAY, "Say {text=a}"));
+        let waits = blocks(queues, "Text programming {IO0=I0}");
+        let waits = diagram("waits", DiagramKind::Main, &waits);
+        main.blocks.extend(waits.blocks);
+        main.blocks.extend(say.blocks);
+        for at in 2..2 + MIDDLE {
+            edge(&mut main, (0, "OUT"), (at, "CF_IN"));
+            edge(&mut main, (at, "OUT"), (1, "CF_IN"));
+        }
+        for at in 2 + MIDDLE..2 + MIDDLE + queues {
+            edge(&mut main, (1, "OUT"), (at, "I0"));
+        }
+        for at in 2 + MIDDLE + queues..main.blocks.len() {
+            edge(&mut main, (1, "OUT"), (at, "CF_IN"));
+        }
+        let told = told_of(&project(vec![main]));
+        told.iter().any(|one| one.contains("come in one instant"))
+    };
+    assert!(busy(100));
+    assert!(!busy(crate::limits::INSTANT_LOOKS_MAX / 430));
+}
+
 /// Each edge of the call stands for all output ports of its name: together they would be billions.
 #[test]
 fn many_output_ports_and_many_edges_of_a_call_cost_what_they_are() {
