@@ -137,7 +137,7 @@ fn a_broken_program_is_refused_with_its_place() {
     let refused = debug(&board, &["debug", "broken.flow"], "c\nq\n");
     assert_eq!(refused.code(), 2, "{}", refused.stderr);
     assert!(
-        refused.stderr.contains("broken.flow: 2:11 "),
+        refused.stderr.contains("broken.flow:2:11: "),
         "{}",
         refused.stderr
     );
