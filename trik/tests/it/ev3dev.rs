@@ -266,6 +266,8 @@ fn positions_are_reached_by_the_ticks_of_the_encoder() {
     near(4, -180.0);
     assert!((view.number(&format!("{RIGHT}/position")) - 180).abs() <= 3);
     for motor in [LEFT, RIGHT] {
+        // What still turns when it is reset goes on a little after it.
+        view.until_still(motor);
         view.write(&format!("{motor}/command"), "reset");
         assert_eq!(view.text(&format!("{motor}/stop_action")), "coast");
         assert_eq!(view.text(&format!("{motor}/polarity")), "normal");
