@@ -130,11 +130,11 @@ test(
     await page.setInputFiles('input[type=file]', {
       name: 'wrong.flow',
       mimeType: 'text/plain',
-      buffer: Buffer.from('diagram "Wrong"\n  s: Sensor(VarName = sensorA6)\n  p: Say\n  s.OUT -> p.DATA\n'),
+      buffer: Buffer.from('diagram "Wrong"\n  f: "Text programming"(IO0 = `zzz + 1`)\n'),
     });
     await page.getByRole('link', { name: 'Show the diagram wrong.flow' }).click();
     await page.getByRole('button', { name: 'Run', exact: true }).click();
-    await page.getByRole('alert').getByText('sensorA6').waitFor();
+    await page.getByRole('alert').getByText('zzz is never given a value').waitFor();
     await page.goto(`${there.robot.url}#program`);
     await page.getByRole('link', { name: 'Show the diagram more.flow' }).click();
     await page.getByRole('alert').getByText('at most 5000 are drawn').waitFor();
