@@ -337,9 +337,12 @@ impl Machine {
         self.formulas.variables()
     }
 
-    /// The value of a variable, if it has one.
+    /// The value of a variable, if it has one; at a stop `data` is the token that comes next.
     pub fn value_of(&self, name: &str) -> Option<Value> {
-        self.formulas.get(name)
+        match self.next_token(name) {
+            Some(token) => Some(token.clone()),
+            None => self.formulas.get(name),
+        }
     }
 
     /// How many tokens wait at a port.

@@ -3,10 +3,10 @@
 //! Owns what such an expression may not do: it reads no sensor and no random number, so that looking changes nothing.
 
 use super::Machine;
-use super::formulas::Refused;
-use super::words;
+use super::formulas::{Refused, assigns};
+use super::{values, words};
 use lang_expr::reserved::SensorIndex;
-use lang_expr::{Outside, Value, Wanted};
+use lang_expr::{Outside, Source, Value, Wanted};
 use lang_text::problem::Problem;
 
 /// Nobody whom an expression could ask.
@@ -46,13 +46,35 @@ impl Outside for Nobody {
     }
 }
 
+/// Words for kinds of tokens with a value, in both languages; numbers are of one kind.
+fn kind_of(token: &Value) -> Option<[&'static str; 2]> {
+    match token {
+        Value::Nil => None,
+        Value::Bool(_) => Some(["a truth", "логическое значение"]),
+        Value::Int(_) | Value::Float(_) => Some(["a number", "число"]),
+        Value::Text(_) | Value::Unset => Some(["a text", "текст"]),
+        Value::List(_) => Some(["a list", "список"]),
+    }
+}
+
 impl Machine {
-    /// The value of an expression over the variables of the program. It changes nothing.
+    /// The value of an expression over the variables of the program, and at a stop over the token that comes next, `data`. It
+    /// changes nothing.
     ///
     /// # Errors
     /// What is wrong with it.
     pub fn evaluate_aside(&mut self, text: &str) -> Result<Value, Vec<Problem>> {
         let mut nobody = Nobody::at(self.now);
+        if let Some(token) = self.token_in(text) {
+            let value = self
+                .formulas
+                .look((text, Wanted::Any), Some(&token), &mut nobody)?;
+            return match value {
+                _ if nobody.is_asked => Err(vec![Problem::error(words::asks_the_robot())]),
+                Some(value) => Ok(value),
+                None => Err(vec![Problem::error(words::no_value_yet())]),
+            };
+        }
         let value = self.formulas.evaluate_text(text, Wanted::Any, &mut nobody);
         match value {
             Ok(value) if !nobody.is_asked => Ok(value),
@@ -66,12 +88,42 @@ impl Machine {
         }
     }
 
-    /// Gives a variable of the program the value of an expression.
+    /// The token that comes next, if the program is stopped before one and a text reads it and assigns nothing.
+    fn token_in(&self, text: &str) -> Option<Value> {
+        let source = Source::new(text, Wanted::Any);
+        if assigns(&source) {
+            return None;
+        }
+        source
+            .names()
+            .find_map(|name| self.next_token(name))
+            .cloned()
+    }
+
+    /// The token that comes next gets the value of an expression, of the same kind as its own.
+    fn assign_token(&mut self, token: &Value, text: &str) -> Result<(), Vec<Problem>> {
+        let value = self.evaluate_aside(text)?;
+        let why = match (kind_of(token), kind_of(&value)) {
+            (None, _) => words::unit_stays(),
+            (Some(was), Some(is)) if was == is && values::fits(&value) => {
+                self.change_next(&value);
+                return Ok(());
+            }
+            (Some(was), Some(is)) if was == is => words::too_large_token(),
+            (Some(was), _) => words::token_keeps_kind(was),
+        };
+        Err(vec![Problem::error(why)])
+    }
+
+    /// Gives a variable of the program, or at a stop the token that comes next, `data`, the value of an expression.
     ///
     /// # Errors
     /// The program has no such variable, what is wrong with the expression, or with a text of the program that could not
-    /// be computed any more; nothing has changed then.
+    /// be computed any more; the token is of another kind; nothing has changed then.
     pub fn assign_aside(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
+        if let Some(token) = self.next_token(name).cloned() {
+            return self.assign_token(&token, text);
+        }
         let names: Vec<&str> = self.variables().map(|(name, _)| name).collect();
         if !names.contains(&name) {
             return Err(vec![Problem::error(words::no_variable(name, &names))]);

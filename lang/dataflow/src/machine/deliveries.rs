@@ -39,6 +39,14 @@ impl Deliveries {
         }
     }
 
+    /// The same, to be changed.
+    pub fn front_mut(&mut self) -> Option<&mut (Target, Value)> {
+        match self.count {
+            0 => None,
+            _ => self.places.get_mut(self.first),
+        }
+    }
+
     /// Takes it.
     pub fn pop(&mut self) -> Option<(Target, Value)> {
         let (target, value) = self.next_place()?;

@@ -389,7 +389,7 @@ fn kept_types(source: &Source, names: &Names) -> Vec<(String, String)> {
 }
 
 /// Whether a text assigns something.
-fn assigns(source: &Source) -> bool {
+pub(super) fn assigns(source: &Source) -> bool {
     let nodes = &source.tree().nodes;
     nodes.iter().any(|part| matches!(part, Part::Assign { .. }))
 }

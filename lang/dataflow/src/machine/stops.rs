@@ -7,6 +7,7 @@
 use super::Machine;
 use super::subject::{Here, Texts};
 use super::trace::Trace;
+use crate::lower::DATA;
 use crate::program::{NodeId, Target};
 use lang_diagram::debug::{Breakpoint, NoBreakpoint, Points, Position, Reason};
 use lang_expr::Value;
@@ -98,6 +99,23 @@ impl Machine {
     /// Where it is stopped, if it is.
     pub fn stopped(&self) -> Option<&Stop> {
         self.stops.stopped.as_ref()
+    }
+
+    /// The token that comes next, if the program is stopped before one and this is its name.
+    pub(super) fn next_token(&self, name: &str) -> Option<&Value> {
+        let next = self.stopped()?.next.as_ref();
+        next.filter(|_| DATA.contains(&name))
+            .map(|(_, token)| token)
+    }
+
+    /// That token is another one.
+    pub(super) fn change_next(&mut self, token: &Value) {
+        let stop = self.stops.stopped.as_mut();
+        let shown = stop.and_then(|stop| stop.next.as_mut());
+        if let (Some((_, shown)), Some((_, next))) = (shown, self.deliveries.front_mut()) {
+            shown.clone_from(token);
+            next.clone_from(token);
+        }
     }
 
     /// Stops before the next instant.

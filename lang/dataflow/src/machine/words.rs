@@ -360,6 +360,24 @@ pub(crate) fn only_looked_at() -> Words {
     )
 }
 
+pub(crate) fn unit_stays() -> Words {
+    Words::new(
+        "the token that comes next has no value: there is nothing to change",
+        "следующий сигнал без значения: менять нечего",
+    )
+}
+
+pub(crate) fn token_keeps_kind([english, russian]: [&str; 2]) -> Words {
+    Words::new(
+        format!(
+            "the token that comes next is {english} and stays one: the blocks after it expect that"
+        ),
+        format!(
+            "следующее значение — {russian}, и другим стать не может: этого ждут блоки после него"
+        ),
+    )
+}
+
 pub(crate) fn no_value_yet() -> Words {
     Words::new("no value yet", "значения ещё нет")
 }

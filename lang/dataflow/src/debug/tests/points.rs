@@ -320,3 +320,48 @@ fn numbers_that_come_by_themselves_are_met_at_the_block_after_them() {
     let once = "R Random generator\nM Motors\nR.OUT > M.M3";
     asked(once, &["break qrm:/main/R"]);
 }
+
+#[test]
+fn the_token_that_comes_next_is_looked_at_and_changed() {
+    let (mut desk, mut robot) = slow();
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M");
+    runs(&mut desk, &mut robot, 0, 20);
+    assert!(desk.is_stopped());
+    let seen = told(&mut desk, "evaluate data + 1");
+    assert!(seen.contains("\"value\":\"11\""), "{seen}");
+    for (order, why) in [
+        ("set data='fast'", "is a number and stays one"),
+        ("set data={1, 2}", "is a number and stays one"),
+        ("set data=dato", "no variable 'dato'"),
+        ("set data=random(3)", "reads no sensors"),
+        ("evaluate data = 3", "assigns none"),
+    ] {
+        let answer = told(&mut desk, order);
+        assert!(answer.contains(why), "{order}: {answer}");
+    }
+    let set = told(&mut desk, "set data=data * 2 + n");
+    assert!(set.contains("\"value\":\"21\""), "{set}");
+    assert!(told(&mut desk, "look").contains("\"value\":\"21\""));
+    told(&mut desk, "clear all");
+    told(&mut desk, "continue");
+    runs(&mut desk, &mut robot, 30, 30);
+    assert_eq!(last(&robot), "power M3 21");
+    // Between two instants nothing comes next.
+    told(&mut desk, "pause");
+    runs(&mut desk, &mut robot, 40, 40);
+    assert!(told(&mut desk, "evaluate data").contains("no variable 'data'"));
+    assert!(told(&mut desk, "set data=3").contains("no variable 'data'"));
+}
+
+#[test]
+fn a_token_without_a_value_gets_none() {
+    let text = "W Wait and send {time=20}\nM Motors\nW.CF_OUT > M.CF_IN";
+    let (mut desk, mut robot) = (desk(text), Robot::default());
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M");
+    runs(&mut desk, &mut robot, 0, 40);
+    assert!(desk.is_stopped());
+    let answer = told(&mut desk, "set data=3");
+    assert!(answer.contains("has no value"), "{answer}");
+}
