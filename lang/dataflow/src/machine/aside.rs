@@ -46,14 +46,14 @@ impl Outside for Nobody {
     }
 }
 
-/// Words for kinds of tokens with a value, in both languages; numbers are of one kind.
+/// Words for the kind of a token with a value, in both languages; numbers are of one kind.
 fn kind_of(token: &Value) -> Option<[&'static str; 2]> {
     match token {
         Value::Nil => None,
-        Value::Bool(_) => Some(["a truth", "логическое значение"]),
-        Value::Int(_) | Value::Float(_) => Some(["a number", "число"]),
-        Value::Text(_) | Value::Unset => Some(["a text", "текст"]),
-        Value::List(_) => Some(["a list", "список"]),
+        Value::Bool(_) => Some(words::A_TRUTH),
+        Value::Int(_) | Value::Float(_) => Some(words::A_NUMBER),
+        Value::Text(_) | Value::Unset => Some(words::A_TEXT),
+        Value::List(_) => Some(words::A_LIST),
     }
 }
 

@@ -360,6 +360,12 @@ pub(crate) fn only_looked_at() -> Words {
     )
 }
 
+/// Kinds of tokens.
+pub(crate) const A_TRUTH: [&str; 2] = ["a truth", "логическое значение"];
+pub(crate) const A_NUMBER: [&str; 2] = ["a number", "число"];
+pub(crate) const A_TEXT: [&str; 2] = ["a text", "текст"];
+pub(crate) const A_LIST: [&str; 2] = ["a list", "список"];
+
 pub(crate) fn unit_stays() -> Words {
     Words::new(
         "the token that comes next has no value: there is nothing to change",
