@@ -21,7 +21,7 @@ const CHANGES: u32 = 500;
 /// Between a change that has arrived and the next one: a whole period, from moment to moment of it. Meanwhile the processor
 /// is free, as the kernel wants of programs that run above all others.
 const PAUSE_US: u32 = POLL_MS * 1000;
-/// Between two looks: who asks without pause holds the kernel's lock against those of whom it tells.
+/// Between two looks: without a pause, looking holds the kernel's lock against the processes that it looks at.
 const LOOK: Duration = Duration::from_micros(2);
 const PROGRAM: &str = "diagram \"Latency\"
   sensor: Sensor(VarName = sensorA1)

@@ -260,7 +260,7 @@ impl Flow {
         Ok(())
     }
 
-    /// What happens is kept while somebody wants to know it; who has missed some of it is told all once more.
+    /// What happens is kept while somebody wants to know it; a client that has missed some of it is told all once more.
     fn keep_diary(&mut self, is_wanted: bool) {
         match (&mut self.diary, is_wanted) {
             (Some(diary), true) => diary.tell_again(),

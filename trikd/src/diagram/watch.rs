@@ -68,10 +68,7 @@ impl Watch {
 
     /// Tells what is new, if it is time.
     pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
-        let errors = std::mem::take(&mut self.errors);
-        for error in &errors {
-            host.error(error)?;
-        }
+        let errors = self.tell_errors(host)?;
         let is_news = self.is_new || self.has_moved || !self.changed.is_empty();
         if !self.is_told(is_news, now, &errors) {
             return Ok(());
@@ -98,10 +95,7 @@ impl Watch {
         host: &Host,
     ) -> io::Result<()> {
         let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
-        let errors = std::mem::take(&mut self.errors);
-        for error in &errors {
-            host.error(error)?;
-        }
+        let errors = self.tell_errors(host)?;
         let is_news = self.is_new || self.has_moved || has_news;
         if !self.is_told(is_news, now, &errors) {
             return Ok(());
@@ -171,6 +165,15 @@ impl Watch {
         if self.errors.len() < lang_text::limits::PROBLEMS {
             self.errors.push(problem.in_locale(self.locale));
         }
+    }
+
+    /// Errors since the last time, which are told at once.
+    fn tell_errors(&mut self, host: &Host) -> io::Result<Vec<String>> {
+        let errors = std::mem::take(&mut self.errors);
+        for error in &errors {
+            host.error(error)?;
+        }
+        Ok(errors)
     }
 
     /// Whether somebody is to be told now.

@@ -151,8 +151,8 @@ impl Supervisor {
         }
     }
 
-    /// Tells a program when somebody begins or ceases to look at it, and to tell everything again to who has missed some or
-    /// begins to record.
+    /// Tells a program when somebody begins or ceases to look at it, and to tell everything again for a client that has missed
+    /// some of it or begins to record.
     pub(super) fn send_watch(&mut self) {
         let clients = &self.around.clients;
         let is_behind = clients.take_behind();

@@ -31,6 +31,18 @@ fn upload(client: &mut Client, name: &str, save: &[u8]) {
     client.raw(save);
 }
 
+/// What is told of a diagram from now on, a line each.
+fn diagram_lines(robot: &Robot) -> impl Iterator<Item = String> {
+    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
+    stream
+        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
+        .unwrap();
+    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
+    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
+    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    lines
+}
+
 fn motor(robot: &Robot) -> String {
     let value = std::fs::read_to_string(robot.tree.join("motors/M1/value")).expect("a value");
     value.trim().to_owned()
@@ -119,15 +131,9 @@ fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
 }
 
 #[test]
-fn who_asks_sees_the_blocks_of_a_data_flow_program_that_react_and_their_tokens() {
+fn a_client_sees_the_blocks_of_a_data_flow_program_that_react_and_their_tokens() {
     let robot = robot(&[]);
-    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
-    stream
-        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
-        .unwrap();
-    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
-    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
-    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    let mut lines = diagram_lines(&robot);
     let mut client = robot.client("control");
     let text = b"diagram \"Count\"\n  hello: Say(text = hello)\n  L: Loop(start_border = 1, end_border = 3, time = 100)\n  F: \"Text programming\"(IO0 = `n = I0 * 2; n`)\n  S: Say\n  L.OUT -> F.I0\n  F.O0 -> S.DATA\n";
     upload(&mut client, "count.flow", text);
@@ -156,13 +162,7 @@ fn who_asks_sees_the_blocks_of_a_data_flow_program_that_react_and_their_tokens()
 #[test]
 fn long_variables_and_the_blocks_of_a_data_flow_program_take_turns() {
     let robot = robot(&[]);
-    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
-    stream
-        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
-        .unwrap();
-    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
-    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
-    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    let mut lines = diagram_lines(&robot);
     let mut client = robot.client("control");
     let long = "x".repeat(1000);
     let text = format!(

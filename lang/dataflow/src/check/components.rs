@@ -1,6 +1,6 @@
 //! Strongly connected components: blocks that lead to each other (Tarjan 1972, without recursion).
 //!
-//! Owns the walk. What an edge means is known to who asks.
+//! Owns the walk. What an edge means is known to the caller.
 
 use crate::program::NodeId;
 

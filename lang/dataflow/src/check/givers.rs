@@ -201,22 +201,11 @@ impl Variables {
 
 /// Variables that a text gives values.
 pub(super) fn gives(tree: &Tree) -> HashSet<Rc<str>> {
-    let targets = tree.nodes.iter().filter_map(|part| match part {
-        Part::Assign { target, .. } => assigned(tree, *target).cloned(),
-        Part::Name(_)
-        | Part::Int(_)
-        | Part::Float(_)
-        | Part::Bool(_)
-        | Part::Text(_)
-        | Part::RawText(_)
-        | Part::Nil
-        | Part::Unary(..)
-        | Part::Binary(..)
-        | Part::Call { .. }
-        | Part::Table { .. }
-        | Part::Index { .. }
-        | Part::Method { .. }
-        | Part::Block(_) => None,
+    let targets = tree.nodes.iter().filter_map(|part| {
+        let Part::Assign { target, .. } = part else {
+            return None;
+        };
+        assigned(tree, *target).cloned()
     });
     targets.collect()
 }
@@ -240,23 +229,12 @@ fn reads(tree: &Tree) -> HashSet<Rc<str>> {
 
 /// The same, without those that stand where `and` and `or` may not come.
 pub(super) fn surely_reads(tree: &Tree) -> HashSet<Rc<str>> {
-    reads_by(tree, |id, visit| match tree.node(id) {
-        Part::Binary(Binary::And | Binary::Or, left, _) => visit(*left),
-        Part::Name(_)
-        | Part::Int(_)
-        | Part::Float(_)
-        | Part::Bool(_)
-        | Part::Text(_)
-        | Part::RawText(_)
-        | Part::Nil
-        | Part::Unary(..)
-        | Part::Binary(..)
-        | Part::Call { .. }
-        | Part::Table { .. }
-        | Part::Index { .. }
-        | Part::Method { .. }
-        | Part::Assign { .. }
-        | Part::Block(_) => tree.children(id, visit),
+    reads_by(tree, |id, visit| {
+        if let Part::Binary(Binary::And | Binary::Or, left, _) = tree.node(id) {
+            visit(*left);
+        } else {
+            tree.children(id, visit);
+        }
     })
 }
 

@@ -110,7 +110,7 @@ fn outputs(program: &Program, arrivals: &Arrivals, id: NodeId, found: &mut Found
     }
 }
 
-/// Who is to blame for it that no token comes to a block.
+/// What keeps all tokens from a block.
 struct Blame {
     /// By node: nodes from which nothing comes. Behind the nodes stands one for each output of a call that leads somewhere,
     /// which waits for the output ports of its subprogram: else each edge would have all of them.

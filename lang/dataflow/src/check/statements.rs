@@ -35,20 +35,12 @@ fn is_idle(tree: &Tree, statement: Id) -> bool {
     let mut open = vec![statement];
     while let Some(id) = open.pop() {
         tree.children(id, |child| open.push(child));
-        match tree.node(id) {
-            Part::Assign { .. } | Part::Call { .. } | Part::Method { .. } => return false,
-            Part::Name(_)
-            | Part::Int(_)
-            | Part::Float(_)
-            | Part::Bool(_)
-            | Part::Text(_)
-            | Part::RawText(_)
-            | Part::Nil
-            | Part::Unary(..)
-            | Part::Binary(..)
-            | Part::Table { .. }
-            | Part::Index { .. }
-            | Part::Block(_) => {}
+        let part = tree.node(id);
+        if matches!(
+            part,
+            Part::Assign { .. } | Part::Call { .. } | Part::Method { .. }
+        ) {
+            return false;
         }
     }
     true

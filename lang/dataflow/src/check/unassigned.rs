@@ -108,21 +108,8 @@ impl Unassigned {
 
 /// The name that a part calls as a function.
 fn called(part: &Part) -> Option<u32> {
-    match part {
-        Part::Call { function, .. } => Some(*function),
-        Part::Name(_)
-        | Part::Int(_)
-        | Part::Float(_)
-        | Part::Bool(_)
-        | Part::Text(_)
-        | Part::RawText(_)
-        | Part::Nil
-        | Part::Unary(..)
-        | Part::Binary(..)
-        | Part::Table { .. }
-        | Part::Index { .. }
-        | Part::Method { .. }
-        | Part::Assign { .. }
-        | Part::Block(_) => None,
-    }
+    let Part::Call { function, .. } = part else {
+        return None;
+    };
+    Some(*function)
 }

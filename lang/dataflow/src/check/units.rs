@@ -16,23 +16,10 @@ pub(super) struct Units {
 pub(super) fn assigned_last(source: &Source) -> Option<Id> {
     let tree = source.tree();
     let last = tree.statements().last().copied()?;
-    match tree.node(last) {
-        Part::Assign { target, .. } => Some(*target),
-        Part::Name(_)
-        | Part::Int(_)
-        | Part::Float(_)
-        | Part::Bool(_)
-        | Part::Text(_)
-        | Part::RawText(_)
-        | Part::Nil
-        | Part::Unary(..)
-        | Part::Binary(..)
-        | Part::Call { .. }
-        | Part::Table { .. }
-        | Part::Index { .. }
-        | Part::Method { .. }
-        | Part::Block(_) => None,
-    }
+    let Part::Assign { target, .. } = tree.node(last) else {
+        return None;
+    };
+    Some(*target)
 }
 
 impl Units {

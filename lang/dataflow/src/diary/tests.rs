@@ -97,7 +97,7 @@ fn what_is_too_much_comes_later_and_is_counted() {
         assert_eq!(next.contains("reacted:10001"), seen == 101, "{next}");
     }
     assert!(!diary.has_news());
-    // Who has missed some of it hears it again, also what is old.
+    // A reader that has missed some of it is told all of it again, however old it is.
     diary.tell_again();
     diary.is_last();
     let again = told(&mut diary, &program, 6000);

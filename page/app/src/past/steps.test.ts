@@ -68,7 +68,6 @@ it('blocks of data flow have reacted lately, and ports the last token, forward a
   expect(ports(6)).toEqual(['fF.O0=7*1', 'fF.O1=8*2', 'f.O0=1*4', '.=*0']);
   expect([...steps.litAt(6)]).toEqual(['f', 'g']);
   expect(steps.at(6, 4)).toMatchObject({
-    leftOut: 2,
     reacted: [{ count: 3 }, { count: 0 }, { count: 1 }, {}],
   });
   // A new version of the program begins to count.

@@ -122,17 +122,15 @@ export class Steps {
   }
 
   /** What is known of blocks of data flow. */
-  #flow(last: Record<string, unknown>): Partial<DebuggerState> {
+  #flow(): Partial<DebuggerState> {
     if (this.#blocks.size === 0) return {};
     const blocks = [...this.#blocks.values()];
     const ports = blocks.flatMap(({ ports, diagram, id, block, caption }) =>
       [...ports].map(([port, token]): LastToken => ({ diagram, id, block, caption, port, ...token })),
     );
-    const leftOut = count(last.blocks_left_out);
     return {
       ports,
       reacted: blocks.map(({ diagram, id, block, reacted }) => ({ diagram, id, block, count: reacted })),
-      ...(leftOut > 0 ? { leftOut } : {}),
     };
   }
 
@@ -151,7 +149,8 @@ export class Steps {
         at: placeOf(thread),
       })),
       variables,
-      ...this.#flow(last),
+      // What a line has no room for comes in one of the next, so nothing is missing for long.
+      ...this.#flow(),
       ...(typeof last.ms === 'number' ? { ms: last.ms } : {}),
     };
   }

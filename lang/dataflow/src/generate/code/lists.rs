@@ -14,24 +14,11 @@ const COMPUTED_ROOM: i32 = 32;
 impl Writer<'_, '_> {
     /// A list gets an item at an index.
     pub(super) fn makes_room(&mut self, index: Id) {
-        let room = match self.source.tree().node(index) {
-            Node::Int(text) => literal::whole(text, Compat::Fixed)
-                .to_int()
-                .saturating_add(1),
-            Node::Nil
-            | Node::Bool(_)
-            | Node::Float(_)
-            | Node::Text(_)
-            | Node::RawText(_)
-            | Node::Name(_)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Index { .. }
-            | Node::Call { .. }
-            | Node::Method { .. }
-            | Node::Table { .. }
-            | Node::Assign { .. }
-            | Node::Block(_) => COMPUTED_ROOM,
+        let room = if let Node::Int(text) = self.source.tree().node(index) {
+            let index = literal::whole(text, Compat::Fixed).to_int();
+            index.saturating_add(1)
+        } else {
+            COMPUTED_ROOM
         };
         let room = usize::try_from(room)
             .unwrap_or(0)
@@ -57,24 +44,9 @@ impl Writer<'_, '_> {
 
     /// An index: any value that counts as a number.
     pub(super) fn index(&mut self, id: Id, depth: usize) -> Result<Phrase, Refused> {
-        let is_any = match self.source.tree().node(id) {
-            Node::Name(_) => self.constant(id).is_none(),
-            Node::Index { .. } => true,
-            Node::Nil
-            | Node::Bool(_)
-            | Node::Int(_)
-            | Node::Float(_)
-            | Node::Text(_)
-            | Node::RawText(_)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Call { .. }
-            | Node::Method { .. }
-            | Node::Table { .. }
-            | Node::Assign { .. }
-            | Node::Block(_) => false,
-        };
-        if !is_any {
+        let part = self.source.tree().node(id);
+        let is_name = matches!(part, Node::Name(_)) && self.constant(id).is_none();
+        if !is_name && !matches!(part, Node::Index { .. }) {
             return self.whole(id, depth);
         }
         let value = self.value(id, depth)?;
