@@ -26,7 +26,7 @@ use stage::Stage;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use target::Target as _;
-use terminal::Terminal;
+use terminal::{Source, Terminal};
 
 /// What `trik debug` can be told.
 #[derive(Args, Clone, Debug)]
@@ -46,9 +46,12 @@ pub(crate) struct DebugArgs {
     pub attach: bool,
 }
 
-/// In which world a diagram is debugged.
+/// Which diagram is debugged, and in which world.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct WorldArgs {
+    /// Run the main diagram of this name instead of the first one.
+    #[arg(long, value_name = "NAME")]
+    pub diagram: Option<String>,
     /// A world with its rules instead of the diagram's own.
     #[arg(long, value_name = "WORLD.xml")]
     pub field: Option<PathBuf>,
@@ -97,6 +100,9 @@ impl WorldArgs {
                 words.extend([name.into(), path.clone().into_os_string()]);
             }
         }
+        if let Some(diagram) = &self.diagram {
+            words.push(format!("--diagram={diagram}").into());
+        }
         words.push(format!("--seed={}", self.seed).into());
         words.push(format!("--time-limit={}", self.time_limit).into());
         words.extend(["--".into(), file.into_os_string()]);
@@ -132,13 +138,14 @@ pub(crate) fn run(args: &DebugArgs) -> Result<u8, Refusal> {
 
 /// A person debugs a diagram on a robot.
 fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusal> {
-    let listing = listing_of(&args.file, args.world.language)?;
+    let diagram = args.world.diagram.as_deref();
+    let listing = listing_of(&args.file, diagram, args.world.language)?;
     let unreachable = |error: Error| Refusal {
         code: UNREADABLE,
         ..Refusal::new(error.to_string())
     };
     let begun = match args.attach {
-        false => Debugged::launch(&args.file, robot),
+        false => Debugged::launch(&args.file, diagram, robot),
         true => Debugged::attach(robot),
     };
     let mut target = begun.map_err(unreachable)?;
@@ -146,7 +153,11 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
         // A person types at a program that is stopped.
         target.order(&Order::Pause).map_err(unreachable)?;
     }
-    let source = (args.file.clone(), args.world.language);
+    let source = Source {
+        file: args.file.clone(),
+        diagram: args.world.diagram.clone(),
+        locale: args.world.language,
+    };
     let talked = Terminal::new(&mut target, listing, source).run();
     target.close();
     talked.map_err(unreachable)?;
@@ -161,8 +172,12 @@ pub(crate) fn talk(staged: &Staged, speed: Option<f64>, start: Start) -> Result<
     say(&staged.strange);
     let listing = listing(staged);
     let mut stage = Stage::of(staged, start).at_speed(speed);
-    let file = staged.file.clone();
-    Terminal::new(&mut stage, listing, (file, staged.settings.locale)).run()?;
+    let source = Source {
+        file: staged.file.clone(),
+        diagram: staged.diagram.clone(),
+        locale: staged.settings.locale,
+    };
+    Terminal::new(&mut stage, listing, source).run()?;
     Ok(0)
 }
 

@@ -3,6 +3,8 @@
 //! Owns plain data and look-ups. Knows neither the save's format nor what a block does.
 
 use crate::blocks::Row;
+use crate::words;
+use lang_text::problem::Words;
 use std::collections::{BTreeMap, HashMap};
 
 /// A whole project.
@@ -124,7 +126,34 @@ pub struct Edge {
     pub gone: Option<(&'static str, &'static Row)>,
 }
 
+/// Which of some diagrams is the main one of a name.
+pub(crate) fn main_named<'a>(
+    name: &str,
+    diagrams: impl Iterator<Item = (&'a str, DiagramKind)> + Clone,
+) -> Result<usize, Words> {
+    let mut all = diagrams.clone();
+    let found = all.position(|(one, kind)| one == name && kind == DiagramKind::Main);
+    found.ok_or_else(|| match diagrams.clone().any(|(one, _)| one == name) {
+        true => words::runs_where_called(name),
+        false => {
+            let mains = diagrams.filter(|(_, kind)| *kind == DiagramKind::Main);
+            words::no_main_named(name, mains.map(|(one, _)| one))
+        }
+    })
+}
+
 impl Project {
+    /// Has another main diagram run, by its name; of several with that name the first one.
+    ///
+    /// # Errors
+    /// Why there is none. Nothing is changed then.
+    pub fn choose(&mut self, name: &str) -> Result<(), Words> {
+        let all = self.diagrams.iter();
+        let chosen = main_named(name, all.map(|one| (one.name.as_str(), one.kind)))?;
+        self.main = Some(chosen);
+        Ok(())
+    }
+
     /// The diagram that a call names by its logical id: the first one, as the editor has it.
     pub fn called(&self, logical: &str) -> Option<usize> {
         let mut all = self.diagrams.iter();

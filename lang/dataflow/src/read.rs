@@ -5,7 +5,7 @@
 
 use crate::blocks::{self, Former, Row};
 use crate::limits;
-use crate::project::{Block, Diagram, DiagramKind, Edge, End, Policy, Project};
+use crate::project::{Block, Diagram, DiagramKind, Edge, End, Policy, Project, main_named};
 use crate::words;
 use lang_diagram::objects::{self, Kind, Object, Objects};
 use lang_diagram::read::{Meta, Save};
@@ -34,18 +34,53 @@ pub enum Language {
 
 /// Which language of a save is run.
 pub fn language(save: &Save) -> Language {
-    let objects = save.objects();
-    let children = objects.get(objects::ROOT).map(|root| &root.children);
-    let mut diagrams = children
-        .into_iter()
-        .flatten()
-        .filter_map(|id| objects.get(id))
-        .filter(|object| object.is_graphical());
-    let first = diagrams.find(|object| [MAIN, "RobotsDiagramNode"].contains(&object.element()));
-    match first {
-        Some(object) if object.element() == MAIN => Language::Dataflow,
+    let mut diagrams = diagrams(save);
+    match diagrams.find(|(_, kind)| *kind == DiagramKind::Main) {
+        Some((object, _)) if object.element() == MAIN => Language::Dataflow,
         _ => Language::Diagram,
     }
+}
+
+/// Has another main diagram of a save run, of either language, by its name; of several with that name the first one.
+///
+/// # Errors
+/// Why there is none. Nothing is changed then.
+pub fn choose(save: &mut Save, name: &str) -> Result<(), Words> {
+    let objects = save.objects();
+    let all: Vec<_> = diagrams(save)
+        .map(|(object, kind)| (object, name_of(objects, object), kind))
+        .collect();
+    let at = main_named(name, all.iter().map(|(_, name, kind)| (*name, *kind)))?;
+    let id = all[at].0.id.clone();
+    save.put_first(&id);
+    Ok(())
+}
+
+/// Diagrams of either language in the order of the root.
+fn diagrams(save: &Save) -> impl Iterator<Item = (&Object, DiagramKind)> {
+    let objects = save.objects();
+    let children = objects.get(objects::ROOT).map(|root| &root.children);
+    let listed = children.into_iter().flatten();
+    let listed = listed.filter_map(|id| objects.get(id));
+    listed
+        .filter(|object| object.is_graphical())
+        .filter_map(|object| {
+            let kind = match object.element() {
+                MAIN | "RobotsDiagramNode" => DiagramKind::Main,
+                SUBPROGRAM | "SubprogramDiagram" => DiagramKind::Subprogram,
+                _ => return None,
+            };
+            Some((object, kind))
+        })
+}
+
+/// The shown name of a diagram.
+fn name_of<'a>(objects: &'a Objects, object: &'a Object) -> &'a str {
+    let logical = object.logical.as_deref().and_then(|id| objects.get(id));
+    logical
+        .and_then(|logical| logical.property("name"))
+        .or_else(|| object.property("name"))
+        .unwrap_or_default()
 }
 
 /// The data-flow project of a save, with what is strange about it.
@@ -105,11 +140,7 @@ impl<'a> Reader<'a> {
     }
 
     fn diagram(&mut self, object: &'a Object, kind: DiagramKind) -> Diagram {
-        let logical = self.logical(object);
-        let name = logical
-            .and_then(|logical| logical.property("name"))
-            .or_else(|| object.property("name"))
-            .unwrap_or_default();
+        let name = name_of(self.objects, object);
         let (listed, edges) = self.children(object, name);
         let mut numbering = Vec::with_capacity(listed.len());
         let mut blocks = Vec::with_capacity(listed.len());

@@ -28,6 +28,41 @@ pub(crate) fn short(text: &str) -> String {
     shown
 }
 
+// Choosing.
+
+pub(crate) fn runs_where_called(name: &str) -> Words {
+    let name = short(name);
+    Words::new(
+        format!("diagram '{name}' is a subprogram, which runs only where a block calls it"),
+        format!(
+            "диаграмма '{name}' — подпрограмма: она выполняется только там, где её вызывает блок"
+        ),
+    )
+}
+
+pub(crate) fn no_main_named<'a>(name: &str, mains: impl Iterator<Item = &'a str> + Clone) -> Words {
+    let meant = near::did_you_mean(name, mains.clone());
+    let (name, mains) = (short(name), list(mains));
+    if mains.is_empty() {
+        return Words::new(
+            format!("there is no diagram '{name}' here: the project has none that can be run"),
+            format!(
+                "диаграммы '{name}' здесь нет: в проекте нет ни одной, которую можно запустить"
+            ),
+        );
+    }
+    Words::new(
+        format!(
+            "there is no diagram '{name}' that can be run here; there are: {mains}{}",
+            meant.in_locale(Locale::English)
+        ),
+        format!(
+            "диаграммы '{name}', которую можно запустить, здесь нет; есть: {mains}{}",
+            meant.in_locale(Locale::Russian)
+        ),
+    )
+}
+
 // Reading.
 
 pub(crate) fn lost_child(element: &str) -> Words {

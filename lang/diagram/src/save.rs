@@ -120,6 +120,17 @@ impl Save {
         Ok(())
     }
 
+    /// Puts an object that the root lists before the others that it lists: the first main diagram is the one that is run.
+    pub fn put_first(&mut self, id: &str) {
+        let Some(root) = self.objects.get_mut(objects::ROOT) else {
+            return;
+        };
+        if let Some(at) = root.children.iter().position(|child| child == id) {
+            root.children[..=at].rotate_right(1);
+            self.is_edited = true;
+        }
+    }
+
     /// Puts a text program into the save; `ending` is that of its language, `js` or `py`.
     ///
     /// # Errors

@@ -18,6 +18,9 @@ pub(crate) struct CheckArgs {
     /// directories of them.
     #[arg(value_name = "FILE|DIR", required_unless_present_any = ["worker", "log"])]
     pub paths: Vec<PathBuf>,
+    /// Run the main diagram of this name instead of the first one of a diagram or data-flow program.
+    #[arg(long, value_name = "NAME", conflicts_with = "log")]
+    pub diagram: Option<String>,
     /// A world with its rules instead of the solution's own: walls, robot, sensors and constraints are all replaced. May
     /// be given several times; a directory means all NAME.xml in it.
     #[arg(long, value_name = "WORLD.xml")]
@@ -141,6 +144,9 @@ impl CheckArgs {
                 word.push(path);
                 words.push(word);
             }
+        }
+        if let Some(diagram) = &self.diagram {
+            words.push(format!("--diagram={diagram}").into());
         }
         for (name, is_set) in [
             ("--force", self.force),

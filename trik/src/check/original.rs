@@ -243,6 +243,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         script: named(&args.script_path),
         inputs: named(&args.input).filter(|path| path.exists()),
         paths: vec![args.file],
+        diagram: None,
         field: Vec::new(),
         own: false,
         task: None,
@@ -290,6 +291,7 @@ fn generated(args: &Model, path: &Path) -> u8 {
     let wanted = GenArgs {
         file: args.file.clone(),
         lang,
+        diagram: None,
         output: Some(path.to_owned()),
         force: false,
         goto: false,

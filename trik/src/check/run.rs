@@ -201,7 +201,7 @@ fn save(path: &Path, args: &CheckArgs) -> Result<Project, Lines> {
         )]
     };
     let opened = open(path).map_err(|unreadable| match unreadable {
-        Unreadable::File(words) => why(words),
+        Unreadable::File(words) | Unreadable::Diagram(words) => why(words),
         Unreadable::Save(problems) => lines(path, &problems, args.language),
     })?;
     match &opened.project.world {
@@ -283,15 +283,16 @@ impl Solution {
         let (project, flow, script) = match own {
             Some(_) => (Project::default(), None, script.or(Some(path))),
             None => {
-                let opened = flow::open(path).map_err(|why| match why {
-                    Unreadable::File(why) => {
-                        let why = why.in_locale(args.language);
-                        vec![format!("{}: {why}", shown(path))].into()
-                    }
-                    Unreadable::Save(problems) => {
-                        Refused::broken(flow::unread(path, &problems, args.language))
-                    }
-                })?;
+                let opened =
+                    flow::open(path, args.diagram.as_deref()).map_err(|why| match why {
+                        Unreadable::File(why) | Unreadable::Diagram(why) => {
+                            let why = why.in_locale(args.language);
+                            vec![format!("{}: {why}", shown(path))].into()
+                        }
+                        Unreadable::Save(problems) => {
+                            Refused::broken(flow::unread(path, &problems, args.language))
+                        }
+                    })?;
                 match opened {
                     flow::Program::Diagram(opened) => (opened.project, None, script),
                     flow::Program::Flow(flow, opened) => (opened.project, Some(flow), script),
@@ -432,6 +433,8 @@ pub(crate) enum Start {
 /// A program of blocks that is ready to run in its world, for a caller that runs it tick by tick.
 pub(crate) struct Staged {
     pub file: PathBuf,
+    /// Its main diagram, if that is not the first one.
+    pub diagram: Option<String>,
     pub program: Ready,
     /// In which a diagram is lowered.
     pub world: World,
@@ -482,6 +485,7 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
         };
         Ok(Staged {
             file: job.solution.clone(),
+            diagram: args.diagram.clone(),
             program,
             world: world(args),
             task,

@@ -76,6 +76,7 @@ impl Launch {
         Ok(Self {
             program: program.into(),
             world: WorldArgs {
+                diagram: request.text("diagram").map(str::to_owned),
                 field: path("field"),
                 task: path("task"),
                 inputs: path("inputs"),
@@ -163,7 +164,7 @@ impl Launch {
         };
         let begun = match self.is_joining {
             true => Debugged::attach(robot),
-            false => Debugged::launch(&self.program, robot),
+            false => Debugged::launch(&self.program, self.diagram(), robot),
         };
         let mut target = match begun {
             Ok(target) => target,
@@ -179,10 +180,15 @@ impl Launch {
         next
     }
 
+    /// The main diagram that is debugged, if it is not the first one.
+    fn diagram(&self) -> Option<&str> {
+        self.world.diagram.as_deref()
+    }
+
     /// The file as it is now.
     fn opened(&self) -> Result<Program, Refusal> {
         must(
-            flow::open(&self.program),
+            flow::open(&self.program, self.diagram()),
             &self.program,
             self.world.language,
         )
@@ -243,7 +249,7 @@ impl Launch {
             Ok(opened) => opened,
             Err(refusal) => return Restart::Refused(refusal.lines.join("\n")),
         };
-        match target.change(&self.program, Written::of(&opened)) {
+        match target.change(&self.program, self.diagram(), Written::of(&opened)) {
             Ok(Changed::InForce(what)) => {
                 important(client, &format!("changed: {what}"));
                 *sheets = Sheets::of(&opened, self.world.language, now);

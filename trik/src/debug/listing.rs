@@ -20,12 +20,17 @@ use std::path::Path;
 /// The type of the block with which a diagram begins.
 const BEGIN: &str = "InitialNode";
 
-/// The text of the diagram or the data-flow program in a file.
+/// The text of the diagram or the data-flow program in a file. `diagram` is the main diagram that is run, if it is not the
+/// first one.
 ///
 /// # Errors
 /// It cannot be read.
-pub(crate) fn listing_of(file: &Path, locale: Locale) -> Result<Listing, Refusal> {
-    let program = must(flow::open(file), file, locale)?;
+pub(crate) fn listing_of(
+    file: &Path,
+    diagram: Option<&str>,
+    locale: Locale,
+) -> Result<Listing, Refusal> {
+    let program = must(flow::open(file, diagram), file, locale)?;
     Ok(Listing::of_program(&program, locale))
 }
 

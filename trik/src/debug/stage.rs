@@ -234,7 +234,12 @@ impl Target for Stage<'_> {
         Ok(events)
     }
 
-    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error> {
+    fn change(
+        &mut self,
+        file: &Path,
+        _diagram: Option<&str>,
+        version: Written<'_>,
+    ) -> Result<Changed, Error> {
         let locale = self.settings.locale;
         let version = match version {
             Written::Diagram(project) => patch::Version::of(project, self.world)

@@ -27,11 +27,17 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
-    /// Replaces the program that runs by the one of a file, which goes on where it is with what it has.
+    /// Replaces the program that runs by the one of a file, which goes on where it is with what it has. `diagram` is the
+    /// main diagram of the file that `version` begins with, if it is not the first one.
     ///
     /// # Errors
     /// The robot does not answer.
-    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error>;
+    fn change(
+        &mut self,
+        file: &Path,
+        diagram: Option<&str>,
+        version: Written<'_>,
+    ) -> Result<Changed, Error>;
 
     /// Ends the program: motors rest.
     fn end(&mut self);

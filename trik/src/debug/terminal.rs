@@ -29,11 +29,21 @@ const AROUND: usize = 5;
 /// How long one look at the program and the keyboard takes.
 const TURN: Duration = Duration::from_millis(50);
 
+/// What is debugged, as a person has named it.
+pub(crate) struct Source {
+    /// The file of the program.
+    pub file: PathBuf,
+    /// Its main diagram, if that is not the first one.
+    pub diagram: Option<String>,
+    /// The language of messages.
+    pub locale: Locale,
+}
+
 /// A debugger with its person.
 pub(crate) struct Terminal<'a> {
     target: &'a mut dyn Target,
     listing: Listing,
-    source: (PathBuf, Locale),
+    source: Source,
     told: Report,
     /// Whether somebody reads prompts.
     is_interactive: bool,
@@ -43,12 +53,8 @@ pub(crate) struct Terminal<'a> {
 }
 
 impl<'a> Terminal<'a> {
-    /// Of a diagram in a file, in a language.
-    pub(crate) fn new(
-        target: &'a mut dyn Target,
-        listing: Listing,
-        source: (PathBuf, Locale),
-    ) -> Self {
+    /// Of a program.
+    pub(crate) fn new(target: &'a mut dyn Target, listing: Listing, source: Source) -> Self {
         Self {
             target,
             listing,
@@ -85,7 +91,7 @@ impl<'a> Terminal<'a> {
                 continue;
             }
             match understand(&self.last, &self.listing) {
-                Err(why) => self.say(&harmless(&why.in_locale(self.source.1)))?,
+                Err(why) => self.say(&harmless(&why.in_locale(self.source.locale)))?,
                 Ok(Typed::Quit) => return Ok(()),
                 Ok(typed) => self.carry_out(&typed, &keys)?,
             }
@@ -100,7 +106,7 @@ impl<'a> Terminal<'a> {
     }
 
     fn says(&self, words: Words) -> Result<(), Error> {
-        self.say(words.in_locale(self.source.1))
+        self.say(words.in_locale(self.source.locale))
     }
 
     fn prompt(&self) -> Result<(), Error> {
@@ -298,7 +304,7 @@ impl<'a> Terminal<'a> {
     }
 
     fn show_stop(&mut self) -> Result<(), Error> {
-        for line in stops::lines(&self.told, Some(&self.listing), self.source.1) {
+        for line in stops::lines(&self.told, Some(&self.listing), self.source.locale) {
             self.say(&line)?;
         }
         Ok(())
@@ -306,8 +312,13 @@ impl<'a> Terminal<'a> {
 
     /// The file as it is now takes the place of what runs.
     fn reload(&mut self) -> Result<(), Error> {
-        let (file, locale) = &self.source;
-        let opened = match must(flow::open(file), file, *locale) {
+        let Source {
+            file,
+            diagram,
+            locale,
+        } = &self.source;
+        let diagram = diagram.as_deref();
+        let opened = match must(flow::open(file, diagram), file, *locale) {
             Ok(opened) => opened,
             Err(refusal) => return self.say(&lines_of(&refusal.lines.join("\n"))),
         };
@@ -315,7 +326,7 @@ impl<'a> Terminal<'a> {
             flow::Program::Diagram(opened) => Written::Diagram(&opened.project),
             flow::Program::Flow(flow, _) | flow::Program::Text(flow) => Written::Flow(flow),
         };
-        match self.target.change(file, version)? {
+        match self.target.change(file, diagram, version)? {
             Changed::InForce(what) => {
                 self.listing = Listing::of_program(&opened, *locale);
                 self.says(words::changed(&harmless(&what)))?;
@@ -358,7 +369,7 @@ impl<'a> Terminal<'a> {
             let line = self.listing.line_of(&thread.at.id);
             let (name, does) = (
                 harmless(&thread.name),
-                harmless(&thread.doing(self.source.1)),
+                harmless(&thread.doing(self.source.locale)),
             );
             let text = self.listing.text(line);
             self.say(&format!("{name:12} {does:20} {line:3} {}", text.trim()))?;
@@ -425,7 +436,7 @@ impl<'a> Terminal<'a> {
     }
 
     fn page(&self, points: &[Value]) -> Result<(), Error> {
-        let said = |words: Words| words::in_locale(self.source.1, words);
+        let said = |words: Words| words::in_locale(self.source.locale, words);
         for point in points {
             let text = |name: &str| {
                 let text = point.get(name).and_then(Value::as_str);
@@ -464,7 +475,7 @@ impl<'a> Terminal<'a> {
     fn help(&self) -> Result<(), Error> {
         for row in ROWS {
             let head = format!("{} {}", row.words.replace(' ', ", "), row.more);
-            self.say(&format!("{head:42} {}", row.what(self.source.1)))?;
+            self.say(&format!("{head:42} {}", row.what(self.source.locale)))?;
         }
         self.says(words::last_of_help())
     }

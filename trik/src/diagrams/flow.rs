@@ -6,10 +6,10 @@
 use super::save::{Unreadable, bytes};
 use lang_dataflow::check::check;
 use lang_dataflow::project::Project;
-use lang_dataflow::read::{Language, language, project};
+use lang_dataflow::read::{Language, choose, language, project};
 use lang_dataflow::text::Places;
 use lang_dataflow::{program, text};
-use lang_diagram::read::{self, Opened};
+use lang_diagram::read::{self, Opened, Save};
 use lang_text::problem::{Locale, Place, Position, Problem, Severity};
 use std::path::Path;
 use std::rc::Rc;
@@ -43,14 +43,39 @@ pub(crate) fn is_text(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case(ENDING))
 }
 
-/// Reads a save or a text.
-pub(crate) fn open(path: &Path) -> Result<Program, Unreadable> {
+/// Reads a save or a text. `diagram` is the main diagram that is run, if it is not the first one.
+pub(crate) fn open(path: &Path, diagram: Option<&str>) -> Result<Program, Unreadable> {
     let bytes = bytes(path).map_err(Unreadable::File)?;
-    if is_text(path) {
-        return of_text(bytes).map(Program::Text);
+    of_bytes(bytes, is_text(path), diagram)
+}
+
+fn of_bytes(bytes: Vec<u8>, is_text: bool, diagram: Option<&str>) -> Result<Program, Unreadable> {
+    if is_text {
+        let mut flow = of_text(bytes)?;
+        if let Some(diagram) = diagram {
+            let chosen = flow.project.choose(diagram);
+            chosen.map_err(Unreadable::Diagram)?;
+        }
+        return Ok(Program::Text(flow));
     }
-    let opened = read::read(&bytes).map_err(Unreadable::Save)?;
+    let mut opened = read::read(&bytes).map_err(Unreadable::Save)?;
+    if let Some(diagram) = diagram {
+        choose(&mut opened.save, diagram).map_err(Unreadable::Diagram)?;
+        (opened.project, _) = opened.save.project();
+    }
     Ok(of_save(opened))
+}
+
+/// A program whose main diagram is another one, as a robot gets it: there is no word for it on the way.
+///
+/// # Errors
+/// Why it cannot be read or has no such diagram.
+pub(crate) fn with_main(path: &Path, bytes: Vec<u8>, diagram: &str) -> Result<Vec<u8>, Unreadable> {
+    let written = |save: &Save| save.write().map_err(|why| Unreadable::Save(vec![why]));
+    match of_bytes(bytes, is_text(path), Some(diagram))? {
+        Program::Diagram(opened) | Program::Flow(_, opened) => written(&opened.save),
+        Program::Text(flow) => Ok(text::write(&flow.project).into_bytes()),
+    }
 }
 
 /// The data-flow program that bytes spell out.

@@ -26,6 +26,9 @@ pub(crate) struct GenArgs {
     /// or c.
     #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target_language)]
     pub lang: Language,
+    /// Write the main diagram of this name instead of the first one.
+    #[arg(long, value_name = "NAME")]
+    pub diagram: Option<String>,
     /// Write to a new file; - is standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
@@ -68,7 +71,11 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
         source: &args.file,
         locale: args.language,
     };
-    let opened = match must(flow::open(&args.file), &args.file, args.language)? {
+    let opened = match must(
+        flow::open(&args.file, args.diagram.as_deref()),
+        &args.file,
+        args.language,
+    )? {
         flow::Program::Diagram(opened) => opened,
         flow::Program::Flow(flow, _) | flow::Program::Text(flow) => {
             return converter(args, &flow, &output);

@@ -76,7 +76,9 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
             Err(why) => {
                 unreadable += 1;
                 let problems = match why {
-                    Unreadable::File(words) => vec![Problem::error(words)],
+                    Unreadable::File(words) | Unreadable::Diagram(words) => {
+                        vec![Problem::error(words)]
+                    }
                     Unreadable::Save(problems) => problems,
                 };
                 let reporter = match flow::is_text(file) {

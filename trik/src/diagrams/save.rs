@@ -19,6 +19,8 @@ pub(crate) enum Unreadable {
     File(Words),
     /// What is in it.
     Save(Vec<Problem>),
+    /// It has no such diagram to run.
+    Diagram(Words),
 }
 
 /// Reads a save.
@@ -44,7 +46,7 @@ pub(crate) fn must<T>(
 ) -> Result<T, Refusal> {
     read.map_err(|why| Refusal {
         lines: match why {
-            Unreadable::File(why) => {
+            Unreadable::File(why) | Unreadable::Diagram(why) => {
                 vec![format!("trik: {}: {}", named(path), why.in_locale(locale))]
             }
             Unreadable::Save(problems) => match flow::is_text(path) {

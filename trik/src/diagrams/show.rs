@@ -53,7 +53,7 @@ pub(crate) struct ShowArgs {
 /// # Errors
 /// The save cannot be read, it is not clear what the diagram does, or the picture cannot be written.
 pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
-    let mut opened = match must(flow::open(&args.file), &args.file, args.language)? {
+    let mut opened = match must(flow::open(&args.file, None), &args.file, args.language)? {
         flow::Program::Diagram(opened) => opened,
         flow::Program::Text(flow) => return show_flow(args, flow),
         flow::Program::Flow(flow, _) => {

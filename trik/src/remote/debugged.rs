@@ -42,12 +42,17 @@ pub(crate) struct Debugged {
 }
 
 impl Debugged {
-    /// Sends a diagram to a robot, where it is stopped before its first block.
+    /// Sends a diagram to a robot, where it is stopped before its first block. `diagram` is the main one of the file that is
+    /// run, if it is not the first.
     ///
     /// # Errors
     /// A sentence: the robot cannot be reached, or refuses.
-    pub(crate) fn launch(path: &Path, at: &super::target::Target) -> Result<Self, Error> {
-        let upload = Upload::read(path)?;
+    pub(crate) fn launch(
+        path: &Path,
+        diagram: Option<&str>,
+        at: &super::target::Target,
+    ) -> Result<Self, Error> {
+        let upload = Upload::read(path, diagram)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
         let mut debugged = Self::over(link, Begun::Here);
@@ -235,7 +240,12 @@ impl Target for Debugged {
         }
     }
 
-    fn change(&mut self, file: &Path, version: Written<'_>) -> Result<Changed, Error> {
+    fn change(
+        &mut self,
+        file: &Path,
+        diagram: Option<&str>,
+        version: Written<'_>,
+    ) -> Result<Changed, Error> {
         let mistakes = match version {
             Written::Diagram(project) => {
                 let version = Version::of(project, World::Robot);
@@ -249,7 +259,7 @@ impl Target for Debugged {
         if let Some(mistakes) = mistakes {
             return Ok(Changed::Wrong(mistakes));
         }
-        let upload = Upload::read(file)?;
+        let upload = Upload::read(file, diagram)?;
         let patch = format!("patch:{}:{}", WhenGone::Refuse.word(), upload.name);
         self.is_changed = None;
         self.awaits = Some(upload.name.clone());

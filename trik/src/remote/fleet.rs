@@ -210,7 +210,7 @@ fn read(args: &SendArgs) -> Result<Vec<Upload>, Error> {
     let files: Vec<_> = args
         .files
         .iter()
-        .map(|path| Upload::read(path))
+        .map(|path| Upload::read(path, None))
         .collect::<Result<_, _>>()?;
     for (index, file) in files.iter().enumerate() {
         if files[..index].iter().any(|other| other.name == file.name) {

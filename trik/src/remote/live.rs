@@ -106,6 +106,8 @@ type FileVersion = Option<(SystemTime, u64)>;
 #[derive(Debug)]
 pub(super) struct Watched {
     path: PathBuf,
+    /// The main diagram that is run, if it is not the first one.
+    diagram: Option<String>,
     gone: WhenGone,
     seen: FileVersion,
     at: Instant,
@@ -116,7 +118,7 @@ impl Watched {
     ///
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
-    pub(super) fn new(path: &Path, gone: WhenGone) -> Result<Self, Error> {
+    pub(super) fn new(path: &Path, diagram: Option<&str>, gone: WhenGone) -> Result<Self, Error> {
         let is_diagram = path.extension().is_some_and(|ending| {
             ["qrs", flow::ENDING]
                 .iter()
@@ -128,6 +130,7 @@ impl Watched {
         }
         Ok(Self {
             path: path.to_owned(),
+            diagram: diagram.map(str::to_owned),
             gone,
             seen: look(path),
             at: Instant::now(),
@@ -146,7 +149,7 @@ impl Watched {
             return None;
         }
         self.seen = now;
-        match Upload::read(&self.path) {
+        match Upload::read(&self.path, self.diagram.as_deref()) {
             Ok(upload) => {
                 let patch = format!("patch:{}:{}", self.gone.word(), upload.name);
                 Some([upload.request(), patch.into_bytes()])
@@ -182,7 +185,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.qrs");
         std::fs::write(&path, "one").unwrap();
-        let mut watched = Watched::new(&path, WhenGone::Refuse).unwrap();
+        let mut watched = Watched::new(&path, None, WhenGone::Refuse).unwrap();
         let long_ago = Instant::now().checked_sub(ms(60_000)).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
@@ -197,8 +200,8 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
-        assert!(Watched::new(Path::new("A.FLOW"), WhenGone::End).is_ok());
-        let other = Watched::new(Path::new("a.py"), WhenGone::End).unwrap_err();
+        assert!(Watched::new(Path::new("A.FLOW"), None, WhenGone::End).is_ok());
+        let other = Watched::new(Path::new("a.py"), None, WhenGone::End).unwrap_err();
         assert!(
             other.to_string().contains("--watch is for diagrams"),
             "{other}"

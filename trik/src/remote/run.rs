@@ -30,6 +30,9 @@ pub(crate) struct RunArgs {
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
+    /// Run the main diagram of this name instead of the first one of the file.
+    #[arg(long, value_name = "NAME")]
+    pub diagram: Option<String>,
     /// Send the diagram again at each save, and change the one that runs without a stop: blocks that are still there keep
     /// their loops and waits, variables keep their values. A save with mistakes changes nothing.
     #[arg(long)]
@@ -60,11 +63,12 @@ pub(crate) fn run(args: &RunArgs) -> u8 {
 }
 
 fn follow(args: &RunArgs) -> Result<u8, Error> {
+    let diagram = args.diagram.as_deref();
     let watched = match args.watch {
-        true => Some(Watched::new(&args.file, args.gone)?),
+        true => Some(Watched::new(&args.file, diagram, args.gone)?),
         false => None,
     };
-    let upload = Upload::read(&args.file)?;
+    let upload = Upload::read(&args.file, diagram)?;
     let target = match &args.robot {
         Some(target) => target.clone(),
         None => the_one()?,

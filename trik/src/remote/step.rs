@@ -32,6 +32,9 @@ pub(crate) struct WhereArgs {
     /// data-flow program can be named by their captions.
     #[arg(long, value_name = "FILE")]
     pub file: Option<PathBuf>,
+    /// The main diagram of FILE that runs, if it is not the first one.
+    #[arg(long, value_name = "NAME", requires = "file")]
+    pub diagram: Option<String>,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
@@ -198,7 +201,8 @@ fn unreachable(error: Error) -> Refusal {
 
 fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
     let file = at.file.as_ref();
-    file.map(|file| listing_of(file, at.language)).transpose()
+    let listing = file.map(|file| listing_of(file, at.diagram.as_deref(), at.language));
+    listing.transpose()
 }
 
 /// The block of a line, a label or an id.

@@ -3,8 +3,11 @@
 //! Owns which files are sent, and what a robot answers to them. `link` is the connection.
 
 use super::link::{Link, Message, ms};
+use crate::diagrams::flow::{unread, with_main};
+use crate::diagrams::save::Unreadable;
 use crate::error::Error;
 use crate::limits;
+use lang_text::problem::Locale;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::os::fd::BorrowedFd;
 use std::path::Path;
@@ -20,11 +23,11 @@ pub(super) struct Upload {
 }
 
 impl Upload {
-    /// Reads a file.
+    /// Reads a file. `diagram` is the main diagram of it that is run, if it is not the first.
     ///
     /// # Errors
-    /// It cannot be read, is too long, or its name is none for a robot.
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+    /// It cannot be read, is too long, its name is none for a robot, or it has no such diagram.
+    pub(super) fn read(path: &Path, diagram: Option<&str>) -> Result<Self, Error> {
         let bad = |why: String| Error::file(path, why);
         let name = path.file_name().and_then(|name| name.to_str());
         let name =
@@ -50,6 +53,9 @@ impl Upload {
         // It may have grown meanwhile.
         std::io::Read::read_to_end(&mut std::io::Read::take(file, most), &mut content)
             .map_err(|error| bad(error.to_string()))?;
+        if let Some(diagram) = diagram {
+            content = with_main(path, content, diagram).map_err(|why| unreadable(path, why))?;
+        }
         let name = name.to_owned();
         Ok(Self { name, content })
     }
@@ -112,6 +118,18 @@ impl Upload {
         text == news::NOT_PAIRED
             || text.starts_with(news::UPLOAD_FAILED)
             || text.starts_with(&format!("'{}'", self.name))
+    }
+}
+
+/// Why the diagram that was asked for is not sent.
+fn unreadable(path: &Path, why: Unreadable) -> Error {
+    match why {
+        Unreadable::File(why) | Unreadable::Diagram(why) => {
+            Error::file(path, why.in_locale(Locale::English))
+        }
+        Unreadable::Save(problems) => {
+            Error::Refused(unread(path, &problems, Locale::English).join("\n"))
+        }
     }
 }
 
@@ -185,20 +203,20 @@ mod tests {
             if name != "none.js" {
                 std::fs::write(dir.join(name), "x").expect(name);
             }
-            let refusal = Upload::read(&dir.join(name)).unwrap_err().to_string();
+            let refusal = Upload::read(&dir.join(name), None).unwrap_err().to_string();
             assert!(refusal.contains(why), "{name}: {refusal}");
         }
         assert!(
-            Upload::read(&dir)
+            Upload::read(&dir, None)
                 .unwrap_err()
                 .to_string()
                 .contains("not a file")
         );
-        assert!(Upload::read(Path::new("/")).is_err());
+        assert!(Upload::read(Path::new("/"), None).is_err());
         let large = std::fs::File::create(dir.join("large")).expect("a file");
         large.set_len(limits::UPLOAD_BYTES_MAX + 1).expect("a hole");
         assert!(
-            Upload::read(&dir.join("large"))
+            Upload::read(&dir.join("large"), None)
                 .unwrap_err()
                 .to_string()
                 .contains("longer than 256 MiB")

@@ -33,6 +33,9 @@ const DRAWN: usize = 40;
 pub(crate) struct WatchArgs {
     /// The diagram that runs, a file NAME.qrs or NAME.flow: with it the sentence of each block is shown.
     pub file: Option<PathBuf>,
+    /// The main diagram of FILE that runs, if it is not the first one.
+    #[arg(long, value_name = "NAME", requires = "file")]
+    pub diagram: Option<String>,
     /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
@@ -53,7 +56,7 @@ pub(crate) struct WatchArgs {
 pub(crate) fn run(args: &WatchArgs) -> Result<u8, Refusal> {
     let listing = match &args.file {
         None => None,
-        Some(file) => Some(listing_of(file, args.language)?),
+        Some(file) => Some(listing_of(file, args.diagram.as_deref(), args.language)?),
     };
     Ok(match watch(args, listing.as_ref()) {
         Ok(code) => code,

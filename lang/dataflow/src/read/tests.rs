@@ -3,7 +3,9 @@
 use super::*;
 use crate::machine::fixtures::{diagram, project as made};
 use crate::save::save;
+use lang_diagram::objects::Object;
 use lang_diagram::read::read;
+use lang_text::problem::Locale;
 
 /// A project as it is after it was written and read again, with what was told.
 fn again(project: &Project) -> (Project, Vec<String>) {
@@ -69,6 +71,75 @@ fn what_was_written_is_read_as_it_was() {
         "1.0.0".to_owned(),
     );
     assert_eq!(format!("{project:#?}"), format!("{read:#?}"));
+}
+
+/// A save with two main diagrams and a subprogram of this language, and then a diagram of control flow.
+fn of_both_languages() -> Save {
+    let main = |name| diagram(name, DiagramKind::Main, "S Say");
+    let inner = diagram("inner", DiagramKind::Subprogram, "S Say");
+    let read = save(&with_ids(made(vec![main("first"), inner, main("second")])));
+    let mut objects = read.objects().clone();
+    let id = "qrm:/RobotsMetamodel/RobotsDiagram/RobotsDiagramNode/{c}";
+    let mut other = Object {
+        id: id.to_owned(),
+        parent: objects::ROOT.to_owned(),
+        logical: Some(format!("{id}-logical")),
+        ..Object::default()
+    };
+    objects.add(other.clone()).expect("a new id");
+    other.id = format!("{id}-logical");
+    other.logical = None;
+    other.set(Kind::Text, "name", "control");
+    objects.add(other).expect("a new id");
+    let root = objects.get_mut(objects::ROOT).expect("a root");
+    root.children.push(id.to_owned());
+    Save::made(objects, read.meta().clone())
+}
+
+#[test]
+fn another_main_diagram_is_run_if_it_is_asked_for() {
+    let mut chosen = of_both_languages();
+    let run = |save: &Save| {
+        let bytes = save.write().expect("a save");
+        let opened = read(&bytes).expect("a project");
+        match language(&opened.save) {
+            Language::Diagram => opened.project.diagrams[0].name.clone(),
+            Language::Dataflow => {
+                let (project, _) = super::project(&opened.save);
+                project.diagrams[project.main.expect("a main diagram")]
+                    .name
+                    .clone()
+            }
+        }
+    };
+    assert_eq!(run(&chosen), "first");
+    for name in ["second", "control", "first"] {
+        choose(&mut chosen, name).expect("a main diagram");
+        assert_eq!(run(&chosen), name);
+    }
+    for (name, told) in [
+        (
+            "secnd",
+            "there is no diagram 'secnd' that can be run here; there are: first, control, second; did you mean 'second'?",
+        ),
+        (
+            "inner",
+            "diagram 'inner' is a subprogram, which runs only where a block calls it",
+        ),
+    ] {
+        let why = choose(&mut chosen, name).expect_err("no main diagram");
+        assert_eq!(why.in_locale(Locale::English), told);
+        assert_eq!(run(&chosen), "first");
+    }
+    let mut project = super::project(&chosen).0;
+    project.choose("second").expect("a main diagram");
+    assert_eq!(project.diagrams[project.main.unwrap()].name, "second");
+    assert!(project.choose("control").is_err());
+    let none = Project::default().choose("x").expect_err("nothing there");
+    assert!(
+        none.in_locale(Locale::English)
+            .ends_with("none that can be run")
+    );
 }
 
 #[test]

@@ -265,3 +265,36 @@ fn a_diagram_does_not_take_the_place_of_a_data_flow_program() {
     assert_eq!(threads["threads"][0]["name"], "main");
     editor.end();
 }
+
+#[test]
+fn another_main_diagram_is_checked_debugged_and_written_as_a_converter() {
+    let board = Board::new();
+    let both = format!("diagram \"Says\"\n  hello: Say(text = hello)\n{COUNTER}");
+    board.file("both.flow", &both);
+    let project = lang_dataflow::text::read(&both).expect("a program");
+    let save = lang_dataflow::save::save(&project).write().expect("a save");
+    board.file("both.qrs", save);
+    for file in ["both.flow", "both.qrs"] {
+        let first = debug(&board, &["check", file], "").good();
+        assert!(first.contains(": ended (no rules), 0.00 s"), "{first}");
+        let other = debug(&board, &["check", file, "--diagram", "Counter"], "").good();
+        assert!(other.contains(": ended (no rules), 4.00 s"), "{other}");
+        let typed = "break wheels if data > 6\nc\nreload\nq\n";
+        let told = debug(&board, &["debug", file, "--diagram", "Counter"], typed).good();
+        for part in ["wheels.M3 gets 8", "changed: 4 blocks kept, 0 new, 0 gone"] {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+        let refused = debug(&board, &["check", file, "--diagram", "counter"], "");
+        let why = "there are: Says, Counter; did you mean 'Counter'?";
+        assert!(refused.stdout.contains(why), "{}", refused.stdout);
+    }
+    let mut editor = Editor::start();
+    let options = json!({"stopOnEntry": true, "diagram": "Counter"});
+    editor.launch_file(&board, "both.qrs", options);
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    let source = editor.good("source", json!({"sourceReference": 1}));
+    let text = source["content"].as_str().expect("a text");
+    assert!(text.starts_with("Program \"Counter\""), "{text}");
+    editor.end();
+}

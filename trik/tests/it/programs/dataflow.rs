@@ -178,6 +178,45 @@ fn a_data_flow_program_is_changed_watched_and_stopped_while_it_runs() {
 }
 
 #[test]
+fn another_main_diagram_of_a_file_runs_and_is_changed_on_a_robot() {
+    let Some(reachable) = Reachable::new() else {
+        return;
+    };
+    let home = &reachable.robot.home;
+    let both = |turn: &str| format!("diagram \"Still\"\n  hello: Say(text = hello)\n{turn}");
+    for (name, content) in [
+        ("both.flow", both(TURN).into_bytes()),
+        ("both.qrs", saved(&both(TURN))),
+    ] {
+        let file = home.0.file(name, content);
+        let file = file.to_str().expect("a name in UTF-8");
+        let robot = ["--robot", reachable.ip()];
+        let run = |diagram| [["run", file, "--diagram", diagram].as_slice(), &robot].concat();
+        let refused = home.run(&run("Trun"));
+        assert_eq!(refused.code(), 2, "{}", refused.stdout);
+        let told = "there are: Still, Turn; did you mean 'Turn'?";
+        assert!(refused.stderr.contains(told), "{}", refused.stderr);
+        let mut watched = run("Turn");
+        watched.push("--watch");
+        let running = Running::new(&mut home.command(&watched));
+        eventually("it turns", || turns(&reachable, 3));
+        let changed = both(&TURN.replace("wheels.M3", "wheels.M4"));
+        home.0.file(
+            name,
+            match name.ends_with("flow") {
+                true => changed.into_bytes(),
+                false => saved(&changed),
+            },
+        );
+        eventually("the other wheel turns", || turns(&reachable, 4));
+        let stopped = home.run(&["stop", robot[0], robot[1]]);
+        assert_eq!(stopped.code(), 0, "{}", stopped.stderr);
+        eventually("its motors rest", || reachable.rests());
+        drop(running);
+    }
+}
+
+#[test]
 fn a_data_flow_program_is_debugged_in_one_talk() {
     let Some(reachable) = Reachable::new() else {
         return;
