@@ -2,7 +2,7 @@
 //!
 //! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
 //! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes;
-//! `flow` runs programs of data flow.
+//! `flow` runs programs of data flow, which `source` reads.
 //! What blocks mean is known in `lang` alone.
 
 // A request, a message or a command that is forgotten must not pass in silence.
@@ -15,6 +15,7 @@ mod live;
 mod motors;
 mod readings;
 mod robot;
+mod source;
 mod watch;
 
 use crate::brick::Brick;
@@ -23,7 +24,6 @@ use crate::host::{Host, Incoming};
 use crate::scripts::ending;
 use crate::{limits, settings};
 use debugging::Debugging;
-use lang_dataflow::project::Project as Flow;
 use lang_dataflow::read::{Language, language};
 use lang_diagram::lower::{World, lower};
 use lang_diagram::machine::{Machine, Options, STEP_MS};
@@ -33,6 +33,7 @@ use lang_text::problem::{Locale, Problem, Severity};
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use robot::Robot;
+use source::Source;
 use std::io::{self, Read};
 use std::path::Path;
 use std::rc::Rc;
@@ -113,22 +114,21 @@ impl Diagram {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
         let bytes = read_save(path).map_err(failed)?;
-        if ending(path) == flow::ENDING {
-            let project = flow::of_text(bytes, self.locale).map_err(failed)?;
-            return self.ready((&project, &[]), host).map_err(failed);
+        if ending(path) == source::ENDING {
+            let source = Source::of_text(bytes, self.locale).map_err(failed)?;
+            return self.ready(&source, host).map_err(failed);
         }
         let opened = opened(&bytes, self.locale).map_err(failed)?;
         if language(&opened.save) == Language::Dataflow {
-            let (project, mut problems) = lang_dataflow::read::project(&opened.save);
-            problems.splice(0..0, opened.problems);
-            return self.ready((&project, &problems), host).map_err(failed);
+            let source = Source::of_save(opened);
+            return self.ready(&source, host).map_err(failed);
         }
         let lowered = lower(&opened.project, World::Robot)
             .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
         for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
             // Faulty blocks tell their fault when they are reached; until then it is a warning.
-            let _ = host.info(&problem.in_locale(self.locale));
+            self.warn(problem.severity, &problem.in_locale(self.locale), host);
         }
         let options = Options {
             compat: self.compat,
@@ -139,19 +139,27 @@ impl Diagram {
     }
 
     /// A data-flow program that has nothing wrong with it; warnings are told.
-    fn ready(&self, read: (&Flow, &[Problem]), host: &Host) -> Result<Loaded, NoDiagram> {
-        let (project, problems) = read;
-        let checked = lang_dataflow::check::check(project);
-        let is_error = |one: &Problem| one.severity == Severity::Error;
-        if checked.has_errors() || problems.iter().any(is_error) {
-            let all: Vec<Problem> = problems.iter().chain(&checked.problems).cloned().collect();
-            return Err(errors_among(&all, self.locale));
+    fn ready(&self, source: &Source, host: &Host) -> Result<Loaded, NoDiagram> {
+        let checked = lang_dataflow::check::check(&source.project);
+        let all = [&source.problems[..], &checked.problems].concat();
+        let errors = source.errors(&all, self.locale);
+        if checked.has_errors() || !errors.is_empty() {
+            return Err(NoDiagram::Problems(errors));
         }
-        let warnings = problems.iter().chain(&checked.problems);
-        for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
-            let _ = host.info(&problem.in_locale(self.locale));
+        let shown = &all[..all.len().min(limits::DIAGRAM_WARNINGS)];
+        let lines = source.lines(shown, self.locale);
+        for (problem, line) in shown.iter().zip(&lines) {
+            self.warn(problem.severity, line, host);
         }
         Ok(Loaded::Flow(Rc::new(checked.program)))
+    }
+
+    /// Tells something that keeps nothing from running.
+    fn warn(&self, severity: Severity, line: &str, host: &Host) {
+        let severity = severity.words();
+        let severity = severity.in_locale(self.locale);
+        // Who cannot be told cannot be told that either.
+        let _ = host.info(&format!("{severity}: {line}"));
     }
 }
 

@@ -12,4 +12,5 @@ pub mod limits;
 pub mod near;
 pub mod problem;
 pub mod svg;
+mod words;
 pub mod xml;

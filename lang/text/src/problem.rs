@@ -3,7 +3,7 @@
 //! Owns the shape of a problem and how it is shown. Knows no language: each part words its own problems, in English and
 //! in Russian.
 
-use crate::limits;
+use crate::{limits, words};
 use std::fmt;
 
 /// A language of messages.
@@ -52,6 +52,13 @@ pub enum Severity {
     Warning,
     /// It does not work.
     Error,
+}
+
+impl Severity {
+    /// Its word.
+    pub fn words(self) -> Words {
+        words::severity(self)
+    }
 }
 
 /// A place in a text, both from 1.

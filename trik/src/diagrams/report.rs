@@ -4,7 +4,6 @@
 //! Owns the order of problems and both forms of a line.
 
 use super::flow::Flow;
-use super::words;
 use crate::terminal::{harmless, named};
 use lang_dataflow::text::Places;
 use lang_diagram::blocks;
@@ -161,7 +160,8 @@ impl<'a> Reporter<'a> {
         if let Some(at) = in_file {
             line.push_str(&format!(":{}:{}", at.line, at.column));
         }
-        let severity = words::severity(problem.severity, self.locale);
+        let severity = problem.severity.words();
+        let severity = severity.in_locale(self.locale);
         line.push_str(&format!(": {severity}: "));
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));

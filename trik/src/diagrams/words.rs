@@ -1,20 +1,7 @@
 //! What `trik lint` says itself, in English and Russian.
 
 use super::report::Count;
-use lang_text::problem::{Locale, Severity, Words};
-
-/// How bad a problem is.
-pub(super) fn severity(severity: Severity, locale: Locale) -> &'static str {
-    let (english, russian) = match severity {
-        Severity::Error => ("error", "ошибка"),
-        Severity::Warning => ("warning", "предупреждение"),
-        Severity::Note => ("note", "замечание"),
-    };
-    match locale {
-        Locale::English => english,
-        Locale::Russian => russian,
-    }
-}
+use lang_text::problem::{Locale, Words};
 
 /// The last line: how many files, and what was found in them.
 pub(super) fn summary(files: usize, unreadable: usize, count: Count, locale: Locale) -> String {

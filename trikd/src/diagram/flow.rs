@@ -1,49 +1,33 @@
 //! Programs of data flow on a robot: the machine of crate `lang-dataflow` with the tree as its robot.
 //!
-//! Owns the time of a running program, when something is told of it, and how a new version of it is read. What orders of a
+//! Owns the time of a running program, and when something is told of it. What orders of a
 //! debugger do is known in `lang_dataflow::debug`, and what a new version keeps in `lang_dataflow::machine::patch`.
 
 use super::live::Answer;
 use super::motors::Motors;
 use super::robot::Robot;
+use super::source::Source;
 use super::watch::Watch;
-use super::{errors_among, hear_until, next_step, opened, read_save, since};
-use crate::engine::{Failure, NoDiagram, Outcome};
+use super::{hear_until, next_step, since};
+use crate::engine::{Failure, Outcome};
 use crate::host::{Host, Incoming};
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::ALL;
-use crate::scripts::ending;
 use lang_dataflow::debug::Desk;
 use lang_dataflow::diary::Diary;
 use lang_dataflow::machine::Machine;
 use lang_dataflow::machine::patch::{Refused, Version};
 use lang_dataflow::machine::trace::{Deaf, Trace};
 use lang_dataflow::program::{NodeId, Program};
-use lang_dataflow::project::Project;
-use lang_dataflow::read::{Language, language};
 use lang_diagram::machine::Status;
 use lang_expr::Value;
-use lang_text::problem::{Locale, Problem, Severity};
+use lang_text::problem::{Locale, Problem};
 use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
-
-/// The ending of a program in its textual form.
-pub(super) const ENDING: &str = "flow";
-
-/// The project that bytes spell out.
-///
-/// # Errors
-/// What is wrong with the text.
-pub(super) fn of_text(bytes: Vec<u8>, locale: Locale) -> Result<Project, NoDiagram> {
-    let text = String::from_utf8(bytes).map_err(|error| {
-        NoDiagram::Unread(io::Error::new(io::ErrorKind::InvalidData, error).into())
-    })?;
-    lang_dataflow::text::read(&text).map_err(|problems| errors_among(&problems, locale))
-}
 
 /// What is heard of a machine.
 struct Heard<'a> {
@@ -272,12 +256,12 @@ impl Flow {
     /// Replaces the program by the one in a file, whole or not at all.
     fn patch(&mut self, path: &Path, robot: &mut Robot<'_>, locale: Locale) -> Answer {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let refused = |why: Refused| Answer::unchanged(&name, &explained(&why, locale));
-        let project = match project_in(path, locale) {
-            Ok(project) => project,
+        let source = match Source::open(path, locale) {
+            Ok(source) => source,
             Err(why) => return Answer::unchanged(&name, &why.to_string()),
         };
-        let version = match Version::of(&project) {
+        let refused = |why: Refused| Answer::unchanged(&name, &explained(&why, &source, locale));
+        let version = match Version::of(&source.project) {
             Ok(version) => version,
             Err(why) => return refused(why),
         };
@@ -309,36 +293,9 @@ impl Flow {
     }
 }
 
-/// The data-flow program in a file: a text or a save.
-fn project_in(path: &Path, locale: Locale) -> Result<Project, NoDiagram> {
-    let bytes = read_save(path)?;
-    if ending(path) == ENDING {
-        return of_text(bytes, locale);
-    }
-    let opened = opened(&bytes, locale)?;
-    if language(&opened.save) != Language::Dataflow {
-        return Err(NoDiagram::Problems(vec![OTHER_LANGUAGE.to_owned()]));
-    }
-    let (project, problems) = lang_dataflow::read::project(&opened.save);
-    let is_error = |one: &Problem| one.severity == Severity::Error;
-    match problems.iter().any(is_error) {
-        true => Err(errors_among(&problems, locale)),
-        false => Ok(project),
-    }
-}
-
-fn explained(why: &Refused, locale: Locale) -> String {
+fn explained(why: &Refused, source: &Source, locale: Locale) -> String {
     match why {
         Refused::Ended => news::NO_DIAGRAM.to_owned(),
-        Refused::Mistakes(problems) => lines(problems, locale),
+        Refused::Mistakes(problems) => source.lines(problems, locale).join("\n"),
     }
 }
-
-/// A line for each problem.
-fn lines(problems: &[Problem], locale: Locale) -> String {
-    let lines = problems.iter().map(|problem| problem.in_locale(locale));
-    lines.collect::<Vec<_>>().join("\n")
-}
-
-/// Why a save with diagrams of control flow does not replace a data-flow program.
-const OTHER_LANGUAGE: &str = "its diagrams are of control flow, and a data-flow program runs: end that, and start the new one";

@@ -72,6 +72,17 @@ fn mistakes_of_a_data_flow_program_are_told_where_they_are_and_nothing_moves() {
         "{}",
         bad.stderr
     );
+    // A mistake in a formula, and a warning about one that runs: both where they stand in the text.
+    let wrong = "diagram \"Wrong\"\n  A: Sensor(VarName = sensorD1)\n  F: \"Text programming\"(IO0 = `I0 + nothing`)\n  A.OUT -> F.I0\n";
+    let wrong = reachable.run("wrong.flow", wrong);
+    assert_eq!(wrong.code(), 1, "{}", wrong.stdout);
+    let told = "wrong.flow: 3:37 Wrong: Text programming 'F': 'IO0': ";
+    assert!(wrong.stderr.contains(told), "{}", wrong.stderr);
+    let odd = "diagram \"Odd\"\n  A: Say(text = hello)\ndiagram \"Other\"\n  B: Say(text = hello)\n";
+    let odd = reachable.run("odd.flow", odd);
+    assert_eq!(odd.code(), 0, "{}", odd.stderr);
+    let told = "warning: 3:1 Other: ";
+    assert!(odd.stderr.contains(told), "{}", odd.stderr);
     // What only the run shows ends it: a division by nothing after a first round that drove.
     let source = "diagram \"Late\"\n  L: Loop(end_border = 1, time = 50)\n  F: \"Text programming\"(IO0 = `60 / (1 - I0)`)\n  M: Motors\n  L.OUT -> F.I0\n  F.O0 -> M.M3\n";
     let late = reachable.run("late.flow", source);

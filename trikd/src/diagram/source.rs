@@ -1,0 +1,113 @@
+//! A data-flow program as its file has it: of a save, or in its textual form.
+//!
+//! Owns how what is wrong with it is told: of a text by line and column. Knows no robot; what is wrong is found in
+//! `lang_dataflow`.
+
+use super::{errors_among, opened, read_save};
+use crate::engine::NoDiagram;
+use crate::scripts::ending;
+use lang_dataflow::project::Project;
+use lang_dataflow::read::{Language, language, project};
+use lang_dataflow::text::{self, Places};
+use lang_diagram::read::Opened;
+use lang_text::problem::{Locale, Place, Position, Problem, Severity};
+use std::io;
+use std::path::Path;
+
+/// The ending of a program in its textual form.
+pub(super) const ENDING: &str = "flow";
+
+/// A data-flow program that was read.
+pub(super) struct Source {
+    /// What it means.
+    pub project: Project,
+    /// What is strange about its save.
+    pub problems: Vec<Problem>,
+    /// Its text, if it is not of a save.
+    text: Option<String>,
+}
+
+impl Source {
+    /// The program that bytes spell out.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn of_text(bytes: Vec<u8>, locale: Locale) -> Result<Self, NoDiagram> {
+        let text = String::from_utf8(bytes).map_err(|error| {
+            NoDiagram::Unread(io::Error::new(io::ErrorKind::InvalidData, error).into())
+        })?;
+        let project = text::read(&text).map_err(|problems| errors_among(&problems, locale))?;
+        Ok(Self {
+            project,
+            problems: Vec::new(),
+            text: Some(text),
+        })
+    }
+
+    /// That of a save.
+    pub fn of_save(opened: Opened) -> Self {
+        let (project, mut problems) = project(&opened.save);
+        problems.splice(0..0, opened.problems);
+        Self {
+            project,
+            problems,
+            text: None,
+        }
+    }
+
+    /// The program in a file, which is to take the place of one that runs.
+    ///
+    /// # Errors
+    /// It cannot be read, has mistakes, or is of control flow.
+    pub fn open(path: &Path, locale: Locale) -> Result<Self, NoDiagram> {
+        let bytes = read_save(path)?;
+        if ending(path) == ENDING {
+            return Self::of_text(bytes, locale);
+        }
+        let opened = opened(&bytes, locale)?;
+        if language(&opened.save) != Language::Dataflow {
+            return Err(NoDiagram::Problems(vec![OTHER_LANGUAGE.to_owned()]));
+        }
+        let source = Self::of_save(opened);
+        match source.errors(&source.problems, locale) {
+            errors if errors.is_empty() => Ok(source),
+            errors => Err(NoDiagram::Problems(errors)),
+        }
+    }
+
+    /// The errors among some problems, a line for each.
+    pub fn errors(&self, problems: &[Problem], locale: Locale) -> Vec<String> {
+        let is_error = |one: &&Problem| one.severity == Severity::Error;
+        let errors: Vec<Problem> = problems.iter().filter(is_error).cloned().collect();
+        self.lines(&errors, locale)
+    }
+
+    /// A line for each problem; of a text it begins with line and column.
+    pub fn lines(&self, problems: &[Problem], locale: Locale) -> Vec<String> {
+        let places = match &self.text {
+            Some(text) => Places::of(text, &self.project).locate(problems),
+            None => vec![None; problems.len()],
+        };
+        let line = |(problem, at)| line(problem, at, locale);
+        problems.iter().zip(places).map(line).collect()
+    }
+}
+
+fn line(problem: &Problem, at: Option<Position>, locale: Locale) -> String {
+    let Some(at) = at else {
+        return problem.in_locale(locale);
+    };
+    // The line begins with the place in the file, not with that in the property.
+    let place = Place {
+        position: None,
+        ..problem.place.clone()
+    };
+    let problem = Problem {
+        place,
+        ..problem.clone()
+    };
+    format!("{}:{} {}", at.line, at.column, problem.in_locale(locale))
+}
+
+/// Why a save with diagrams of control flow does not replace a data-flow program.
+const OTHER_LANGUAGE: &str = "its diagrams are of control flow, and a data-flow program runs: end that, and start the new one";
