@@ -193,6 +193,7 @@ impl Machine {
                     return Err(self.fault_at(Place::default(), words));
                 }
                 self.tell_lacking(env);
+                self.tell_unreadable(env);
                 if let Some(main) = env.program.instances.first() {
                     let starts = main.starts.iter().map(|&start| (start, Value::Nil));
                     self.deliveries.extend(starts);

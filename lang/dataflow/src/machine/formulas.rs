@@ -9,6 +9,7 @@ use crate::lower::DATA;
 use crate::program::{Formula, NodeId, Program, Text};
 use crate::sensors;
 use lang_expr::names::{is_own, own_name};
+use lang_expr::reserved::SensorIndex;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Kind, Names, Outside, Slot, Source, Store, Type, Value, Wanted};
 use lang_text::problem::{Problem, Words};
@@ -115,6 +116,19 @@ impl Formulas {
         *count = index + 1 - *first;
         self.reads.push(bits);
         self.sources.push(source);
+    }
+
+    /// Sensor variables that texts read, each with the first text that does.
+    pub fn sensors(&self) -> Vec<(Formula, SensorIndex)> {
+        let mut found: Vec<(Formula, SensorIndex)> = Vec::new();
+        for (index, source) in (0..).zip(&self.sources) {
+            for sensor in source.names().filter_map(sensors::find) {
+                if found.iter().all(|(_, one)| *one != sensor) {
+                    found.push((index, sensor));
+                }
+            }
+        }
+        found
     }
 
     /// The node of a text.

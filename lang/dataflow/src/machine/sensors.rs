@@ -199,6 +199,23 @@ impl Machine {
         }
     }
 
+    /// The same for sensors that expressions read, each told once, at the first text that has it. A text that is computed
+    /// in the first instant ends the program then.
+    pub(super) fn tell_unreadable(&mut self, env: &mut Env<'_>) {
+        for (formula, sensor) in self.formulas.sensors() {
+            if is_of_camera(sensor) || self.readings.variable(sensor, env.brick).is_some() {
+                continue;
+            }
+            if self.warnings.len() < lang_text::limits::PROBLEMS {
+                let name = crate::sensors::name(sensor);
+                let mut problem = Problem::warning(words::sensor_missing_later(name));
+                let text = &env.program.formulas[formula as usize];
+                problem.place = env.program.property_place(text.node, text.property, None);
+                self.warnings.push(problem);
+            }
+        }
+    }
+
     /// What a block would give now that gives one sensor's readings.
     fn reading(&mut self, source: &Source, env: &mut Env<'_>) -> Option<Value> {
         match source {

@@ -243,6 +243,17 @@ pub(crate) fn no_reading_later() -> Words {
     )
 }
 
+pub(crate) fn sensor_missing_later(name: &str) -> Words {
+    Words::new(
+        format!(
+            "the robot has no such device, or it says nothing: {name}; when this text is computed, the program ends with an error"
+        ),
+        format!(
+            "у робота нет такого устройства, или оно молчит: {name}; когда этот текст будет вычислен, программа закончится ошибкой"
+        ),
+    )
+}
+
 pub(crate) fn reading_failed() -> Words {
     Words::new(
         "the sensor says nothing for a while, so no tokens come from it",

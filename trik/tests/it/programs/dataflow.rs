@@ -78,7 +78,8 @@ fn mistakes_of_a_data_flow_program_are_told_where_they_are_and_nothing_moves() {
     assert_eq!(wrong.code(), 1, "{}", wrong.stdout);
     let told = "wrong.flow: 3:37 Wrong: Text programming 'F': 'IO0': ";
     assert!(wrong.stderr.contains(told), "{}", wrong.stderr);
-    let odd = "diagram \"Odd\"\n  A: Say(text = hello)\ndiagram \"Other\"\n  B: Say(text = hello)\n";
+    let odd =
+        "diagram \"Odd\"\n  A: Say(text = hello)\ndiagram \"Other\"\n  B: Say(text = hello)\n";
     let odd = reachable.run("odd.flow", odd);
     assert_eq!(odd.code(), 0, "{}", odd.stderr);
     let told = "warning: 3:1 Other: ";

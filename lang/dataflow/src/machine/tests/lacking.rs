@@ -45,6 +45,36 @@ fn a_missing_sensor_that_is_asked_later_is_told_before_anything_moves() {
 }
 
 #[test]
+fn a_missing_sensor_in_an_expression_is_told_before_anything_moves() {
+    let text = "
+        G Motors {M3Power=40}
+        W Wait and send {time=100}
+        F Text programming {IO0=sensorA1 + sensorD1}
+        H Text programming {IO0=2 * sensorA1 + lineSensor[0]}
+        M Motors
+        G.CF_OUT > W.CF_IN
+        W.CF_OUT > F.I0
+        W.CF_OUT > H.I0
+        F.O0 > M.M3";
+    let main = diagram("main", DiagramKind::Main, text);
+    let (mut machine, mut robot) = (machine(&project(vec![main])), Script::default());
+    robot.readings.insert("D1", vec![5]);
+    machine.step(0, &mut robot, &mut Deaf);
+    let told: Vec<String> = machine.warnings().iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        [
+            "main: Text programming 'F': 'IO0': the robot has no such device, or it says nothing: sensorA1; when this text is computed, the program ends with an error"
+        ]
+    );
+    assert_eq!(machine.status(), Status::Running);
+    for now in (10..=100).step_by(10) {
+        machine.step(now, &mut robot, &mut Deaf);
+    }
+    assert_eq!(machine.errors().len(), 1);
+}
+
+#[test]
 fn the_camera_is_not_asked_before_a_block_asks_it() {
     for sensor in [
         "lineSensor",
