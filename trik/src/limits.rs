@@ -18,6 +18,8 @@ pub const VIEW_MS: u16 = 100;
 pub const SOUND_CHARS_MAX: usize = 500;
 /// Names of diagrams that a message lists.
 pub const DIAGRAM_NAMES_MAX: usize = 20;
+/// Characters of a diagram's name that a message repeats.
+pub const DIAGRAM_NAME_SHOWN_MAX: usize = 80;
 /// How far a judged run may be ahead of the first one that is not done.
 pub const RUNS_AHEAD_MAX: usize = 2_000;
 /// Bytes of one path of a job of judged runs.
@@ -54,6 +56,9 @@ pub const CONNECT_MS: u32 = 5_000;
 pub const ANSWER_MS: u32 = 20_000;
 /// Greatest program that is sent; a robot takes at most 256 MiB, and usually 16.
 pub const UPLOAD_BYTES_MAX: u64 = 256 << 20;
+/// The same for programs of blocks: what every robot takes, less the words of the request. One that refuses a message ends
+/// the connection, and with it the changes of a program that goes on.
+pub const BLOCKS_UPLOAD_BYTES_MAX: u64 = frame::limits::CONTROL_BYTES as u64 - 1024;
 /// Programs from here on show how far they are on their way.
 pub const PROGRESS_BYTES: usize = 256 << 10;
 /// Greatest message of a robot.

@@ -274,6 +274,8 @@ pub const CONTROL_IN: &str = "CF_IN";
 pub const CONTROL_OUT: &str = "CF_OUT";
 /// The flag that makes a text an expression.
 pub const EVALUATE: &str = "Evaluate";
+/// Which port of the call a block *Input port* or *Output port* is.
+pub const PORT_OF_CALL: &str = "identifier";
 /// The flag that makes a block wait for all its inputs.
 pub const SYNCHRONIZED: &str = "synch";
 

@@ -131,8 +131,11 @@ pub(crate) fn main_named<'a>(
     name: &str,
     diagrams: impl Iterator<Item = (&'a str, DiagramKind)> + Clone,
 ) -> Result<usize, Words> {
-    let mut all = diagrams.clone();
-    let found = all.position(|(one, kind)| one == name && kind == DiagramKind::Main);
+    let is_meant = |(one, kind): &(&str, DiagramKind)| *one == name && *kind == DiagramKind::Main;
+    if diagrams.clone().filter(is_meant).count() > 1 {
+        return Err(words::several_named(name));
+    }
+    let found = diagrams.clone().position(|one| is_meant(&one));
     found.ok_or_else(|| match diagrams.clone().any(|(one, _)| one == name) {
         true => words::runs_where_called(name),
         false => {
@@ -143,7 +146,7 @@ pub(crate) fn main_named<'a>(
 }
 
 impl Project {
-    /// Has another main diagram run, by its name; of several with that name the first one.
+    /// Has another main diagram run, by its name.
     ///
     /// # Errors
     /// Why there is none. Nothing is changed then.

@@ -41,7 +41,7 @@ pub fn language(save: &Save) -> Language {
     }
 }
 
-/// Has another main diagram of a save run, of either language, by its name; of several with that name the first one.
+/// Has another main diagram of a save run, of either language, by its name.
 ///
 /// # Errors
 /// Why there is none. Nothing is changed then.

@@ -2,7 +2,7 @@
 //!
 //! Owns the pairs of objects, as the editor makes them. Knows no container: `lang_diagram` writes the files.
 
-use crate::project::{Block, Diagram, Edge, End, Project};
+use crate::project::{Block, Diagram, DiagramKind, Edge, End, Project};
 use crate::read::{CAPACITY, POLICY};
 use lang_diagram::objects::{Kind, NOTHING, Object, Objects, ROOT};
 use lang_diagram::read::{DATAFLOW_VERSION_KEY, Meta, Save};
@@ -10,11 +10,19 @@ use lang_diagram::read::{DATAFLOW_VERSION_KEY, Meta, Save};
 /// The one version of the language.
 const VERSION: &str = "1.0.0";
 
-/// The save of a project. Objects whose ids are not new are left out: a project that was read has none.
+/// The save of a project. Objects whose ids are not new are left out: a project that was read has none. The diagram that is
+/// run comes first, because in a save the first main diagram is run.
 pub fn save(project: &Project) -> Save {
     let mut objects = Objects::default();
     let mut roots = Vec::new();
-    for diagram in &project.diagrams {
+    let mut diagrams = project.diagrams.iter();
+    let usual = diagrams.position(|one| one.kind == DiagramKind::Main);
+    let moved = project.main.filter(|main| Some(*main) != usual);
+    let others = (0..project.diagrams.len()).filter(|at| Some(*at) != moved);
+    for diagram in moved.into_iter().chain(others) {
+        let Some(diagram) = project.diagrams.get(diagram) else {
+            continue;
+        };
         roots.push(logical_id(&diagram.id, &diagram.logical));
         roots.push(diagram.id.clone());
     }

@@ -15,7 +15,7 @@ pub use sentences::{Extent, Line, lines, sentences};
 pub use ways::Looks;
 pub use words::{too_many, too_many_edges};
 
-use crate::blocks::{Content, Property};
+use crate::blocks::{Content, PORT_OF_CALL, Property};
 use crate::project::{Block, Diagram};
 use lang_text::problem::Locale;
 use std::collections::HashMap;
@@ -90,7 +90,10 @@ fn said(block: &Block, with_defaults: bool) -> Vec<Changed<'_>> {
     let mut all = Vec::new();
     for property in known {
         let text = block.text(property.name);
-        if text != property.default || with_defaults && !text.is_empty() {
+        // Which sensor or port it is says what the block does, also where it is the usual one.
+        let is_part_of_it = matches!(property.content, Content::Sensor | Content::Port)
+            || property.name == PORT_OF_CALL;
+        if text != property.default || (with_defaults || is_part_of_it) && !text.is_empty() {
             all.push(Changed {
                 name: shown(property),
                 text,

@@ -40,6 +40,18 @@ pub(crate) fn runs_where_called(name: &str) -> Words {
     )
 }
 
+pub(crate) fn several_named(name: &str) -> Words {
+    let name = short(name);
+    Words::new(
+        format!(
+            "several diagrams here have the name '{name}', so it does not say which one is meant: give them names of their own"
+        ),
+        format!(
+            "здесь несколько диаграмм с именем '{name}', поэтому неясно, какая нужна: дайте им разные имена"
+        ),
+    )
+}
+
 pub(crate) fn no_main_named<'a>(name: &str, mains: impl Iterator<Item = &'a str> + Clone) -> Words {
     let meant = near::did_you_mean(name, mains.clone());
     let (name, mains) = (short(name), list(mains));
@@ -169,8 +181,8 @@ pub(crate) fn unknown_capacity(word: &str) -> Words {
 
 pub(crate) fn no_main() -> Words {
     Words::new(
-        "the project has no data-flow diagram that can be run",
-        "в проекте нет потоковой диаграммы, которую можно запустить",
+        "the project has no data-flow diagram that is run: a program as text begins with `diagram \"NAME\"`, subprograms run only where blocks call them, and `run nothing` says that no diagram is run",
+        "в проекте нет потоковой диаграммы, которая выполняется: программа в виде текста начинается с `diagram \"ИМЯ\"`, подпрограммы выполняются только там, где их вызывают блоки, а `run nothing` значит, что не выполняется ничего",
     )
 }
 
@@ -356,8 +368,8 @@ pub(crate) fn too_many_names(most: usize) -> Words {
 
 pub(crate) fn queues_differ() -> Words {
     Words::new(
-        "edges that end at one port must agree on its queue: give them the same Policy and Capacity",
-        "линии к одному порту должны одинаково описывать его очередь: задайте им одни и те же Policy и Capacity",
+        "edges that end at one port must agree on its queue: give them the same Policy and Capacity, in a text the same `latest`, `fifo N` or `error N`",
+        "линии к одному порту должны одинаково описывать его очередь: задайте им одни и те же Policy и Capacity, в тексте одно и то же `latest`, `fifo N` или `error N`",
     )
 }
 

@@ -281,6 +281,10 @@ impl Solution {
         let script = args.script.as_deref();
         let own = Language::of(path);
         let (project, flow, script) = match own {
+            Some(_) if args.diagram.is_some() => {
+                let why = words::diagram_of_no_diagram(args.language);
+                return Err(vec![format!("{}: {why}", shown(path))].into());
+            }
             Some(_) => (Project::default(), None, script.or(Some(path))),
             None => {
                 let opened =

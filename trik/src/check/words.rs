@@ -143,6 +143,15 @@ pub(super) fn is_world(locale: Locale) -> &'static str {
     )
 }
 
+/// A program without diagrams, of which one is to be run.
+pub(super) fn diagram_of_no_diagram(locale: Locale) -> &'static str {
+    choose(
+        locale,
+        "--diagram is for diagrams (NAME.qrs, NAME.flow), and this is another program",
+        "--diagram есть только у диаграмм (NAME.qrs, NAME.flow), а это другая программа",
+    )
+}
+
 /// A program with text that has nowhere to run.
 pub(super) fn no_world(locale: Locale) -> &'static str {
     choose(

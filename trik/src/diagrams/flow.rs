@@ -5,8 +5,9 @@
 
 use super::save::{Unreadable, bytes};
 use lang_dataflow::check::check;
-use lang_dataflow::project::Project;
+use lang_dataflow::project::{DiagramKind, Project};
 use lang_dataflow::read::{Language, choose, language, project};
+use lang_dataflow::save::save;
 use lang_dataflow::text::Places;
 use lang_dataflow::{program, text};
 use lang_diagram::read::{self, Opened, Save};
@@ -35,6 +36,12 @@ pub(crate) enum Program {
     Flow(Flow, Box<Opened>),
     /// A data-flow program in its textual form.
     Text(Flow),
+}
+
+/// Whether a file is a program of blocks, by its name: a save, or a data-flow program in its textual form.
+pub(crate) fn is_of_blocks(path: &Path) -> bool {
+    let ending = path.extension();
+    is_text(path) || ending.is_some_and(|ending| ending.eq_ignore_ascii_case("qrs"))
 }
 
 /// Whether a file is a data-flow program in its textual form, by its name.
@@ -66,16 +73,30 @@ fn of_bytes(bytes: Vec<u8>, is_text: bool, diagram: Option<&str>) -> Result<Prog
     Ok(of_save(opened))
 }
 
-/// A program whose main diagram is another one, as a robot gets it: there is no word for it on the way.
+/// A program whose main diagram is another one, as a robot gets it: there is no word for it on the way. Of a data-flow
+/// program other main diagrams stay here, so that the robot does not tell that they are not run.
 ///
 /// # Errors
 /// Why it cannot be read or has no such diagram.
 pub(crate) fn with_main(path: &Path, bytes: Vec<u8>, diagram: &str) -> Result<Vec<u8>, Unreadable> {
     let written = |save: &Save| save.write().map_err(|why| Unreadable::Save(vec![why]));
     match of_bytes(bytes, is_text(path), Some(diagram))? {
-        Program::Diagram(opened) | Program::Flow(_, opened) => written(&opened.save),
-        Program::Text(flow) => Ok(text::write(&flow.project).into_bytes()),
+        Program::Diagram(opened) => written(&opened.save),
+        Program::Flow(flow, _) => written(&save(&alone(flow.project))),
+        Program::Text(flow) => Ok(text::write(&alone(flow.project)).into_bytes()),
     }
+}
+
+/// A project with one main diagram, the one that is run.
+fn alone(mut project: Project) -> Project {
+    let main = project.main;
+    let all = std::mem::take(&mut project.diagrams);
+    let kept = all.into_iter().enumerate();
+    let kept = kept.filter(|(at, one)| Some(*at) == main || one.kind == DiagramKind::Subprogram);
+    project.diagrams = kept.map(|(_, one)| one).collect();
+    let mut diagrams = project.diagrams.iter();
+    project.main = diagrams.position(|one| one.kind == DiagramKind::Main);
+    project
 }
 
 /// The data-flow program that bytes spell out.

@@ -4,7 +4,7 @@
 
 use super::flow::{self, Flow};
 use super::report::Reporter;
-use super::save::must;
+use super::save::{Unreadable, must};
 use crate::language;
 use crate::limits;
 use crate::output::{Output, standard};
@@ -13,6 +13,7 @@ use crate::terminal::harmless;
 use clap::Args;
 use lang_dataflow::show::{Extent, Looks};
 use lang_diagram::show::{outline::outline, picture::picture};
+use lang_text::near::did_you_mean;
 use lang_text::problem::Locale;
 use std::path::{Path, PathBuf};
 
@@ -53,7 +54,7 @@ pub(crate) struct ShowArgs {
 /// # Errors
 /// The save cannot be read, it is not clear what the diagram does, or the picture cannot be written.
 pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
-    let mut opened = match must(flow::open(&args.file, None), &args.file, args.language)? {
+    let mut opened = match must(opened(args), &args.file, args.language)? {
         flow::Program::Diagram(opened) => opened,
         flow::Program::Text(flow) => return show_flow(args, flow),
         flow::Program::Flow(flow, _) => {
@@ -97,6 +98,15 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     })?;
     standard(text.as_bytes())?;
     Ok(0)
+}
+
+/// The program in the file: of a save with both languages the one that has the diagram that was asked for.
+fn opened(args: &ShowArgs) -> Result<flow::Program, Unreadable> {
+    match flow::open(&args.file, args.diagram.as_deref()) {
+        // It may be a subprogram, which can be shown, or there is none: that is told with all that there are.
+        Err(Unreadable::Diagram(_)) => flow::open(&args.file, None),
+        opened => opened,
+    }
 }
 
 /// Shows a data-flow program.
@@ -157,9 +167,11 @@ fn choose<'a>(
         if all.len() > limits::DIAGRAM_NAMES_MAX {
             names.push("others".to_owned());
         }
-        let (name, names) = (harmless(name), names.join(", "));
+        let meant = did_you_mean(name, all).english;
+        let shown: String = name.chars().take(limits::DIAGRAM_NAME_SHOWN_MAX).collect();
+        let (name, names) = (harmless(&shown), names.join(", "));
         Refusal::new(format!(
-            "there is no diagram '{name}' in this project; there are: {names}"
+            "there is no diagram '{name}' in this project; there are: {names}{meant}"
         ))
     })
 }

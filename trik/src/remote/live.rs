@@ -119,12 +119,7 @@ impl Watched {
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
     pub(super) fn new(path: &Path, diagram: Option<&str>, gone: WhenGone) -> Result<Self, Error> {
-        let is_diagram = path.extension().is_some_and(|ending| {
-            ["qrs", flow::ENDING]
-                .iter()
-                .any(|one| ending.eq_ignore_ascii_case(one))
-        });
-        if !is_diagram {
+        if !flow::is_of_blocks(path) {
             let why = "--watch is for diagrams (NAME.qrs, NAME.flow): other programs cannot be changed while they run";
             return Err(Error::file(path, why.to_owned()));
         }

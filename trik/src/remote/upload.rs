@@ -3,7 +3,8 @@
 //! Owns which files are sent, and what a robot answers to them. `link` is the connection.
 
 use super::link::{Link, Message, ms};
-use crate::diagrams::flow::{unread, with_main};
+use super::output::harmless;
+use crate::diagrams::flow::{is_of_blocks, unread, with_main};
 use crate::diagrams::save::Unreadable;
 use crate::error::Error;
 use crate::limits;
@@ -40,13 +41,19 @@ impl Upload {
                 "a program with ':' in its name cannot be sent".to_owned()
             ));
         }
-        let data = std::fs::metadata(path).map_err(|error| bad(error.to_string()))?;
+        let data = std::fs::metadata(path).map_err(|error| bad(unread_file(&error)))?;
         if !data.is_file() {
             return Err(bad("not a file".to_owned()));
         }
-        let most = limits::UPLOAD_BYTES_MAX;
+        let most = match is_of_blocks(path) {
+            true => limits::BLOCKS_UPLOAD_BYTES_MAX,
+            false => limits::UPLOAD_BYTES_MAX,
+        };
         if data.len() > most {
-            return Err(bad(format!("longer than {} MiB", most >> 20)));
+            return Err(bad(format!(
+                "longer than {} MiB, and a robot takes no longer one",
+                most.div_ceil(1 << 20)
+            )));
         }
         let mut content = Vec::new();
         let file = std::fs::File::open(path).map_err(|error| bad(error.to_string()))?;
@@ -54,6 +61,11 @@ impl Upload {
         std::io::Read::read_to_end(&mut std::io::Read::take(file, most), &mut content)
             .map_err(|error| bad(error.to_string()))?;
         if let Some(diagram) = diagram {
+            if !is_of_blocks(path) {
+                let why =
+                    "--diagram is for diagrams (NAME.qrs, NAME.flow), and this is another program";
+                return Err(bad(why.to_owned()));
+            }
             content = with_main(path, content, diagram).map_err(|why| unreadable(path, why))?;
         }
         let name = name.to_owned();
@@ -121,11 +133,19 @@ impl Upload {
     }
 }
 
+/// Why a file cannot be read, without the system's number for it.
+fn unread_file(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
 /// Why the diagram that was asked for is not sent.
 fn unreadable(path: &Path, why: Unreadable) -> Error {
     match why {
         Unreadable::File(why) | Unreadable::Diagram(why) => {
-            Error::file(path, why.in_locale(Locale::English))
+            Error::file(path, harmless(why.in_locale(Locale::English)))
         }
         Unreadable::Save(problems) => {
             Error::Refused(unread(path, &problems, Locale::English).join("\n"))

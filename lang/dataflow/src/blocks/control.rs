@@ -2,7 +2,10 @@
 
 use super::Content::{self, Constant, Expression, Flag, Number, Truth, Variables, Whole};
 use super::Kind::{Any, Whole as Int};
-use super::{Does, Property, Row, SYNCHRONIZED, control_in, control_out, input, output, property};
+use super::{
+    Does, PORT_OF_CALL, Property, Row, SYNCHRONIZED, control_in, control_out, input, output,
+    property,
+};
 
 const fn expression(name: &'static str, default: &'static str) -> Property {
     property(name, name, Expression, default)
@@ -160,7 +163,7 @@ pub(super) const ROWS: &[Row] = &[
         russian: "Вход подпрограммы",
         size: (100, 100),
         ports: &[output("OUT", Any, 100, 47)],
-        properties: &[property("identifier", "input port name", INPUTS, "I0")],
+        properties: &[property(PORT_OF_CALL, "input port name", INPUTS, "I0")],
         text: "Where tokens come into a subprogram: those of the call's port of this name.",
         does: Does::InPort,
     },
@@ -170,7 +173,7 @@ pub(super) const ROWS: &[Row] = &[
         russian: "Выход подпрограммы",
         size: (100, 100),
         ports: &[input("DATA", Any, 0, 45)],
-        properties: &[property("identifier", "output port name", OUTPUTS, "O0")],
+        properties: &[property(PORT_OF_CALL, "output port name", OUTPUTS, "O0")],
         text: "Where tokens leave a subprogram: by the call's port of this name.",
         does: Does::OutPort,
     },

@@ -61,6 +61,10 @@ fn blocks_ports_and_properties_are_looked_at() {
         "error: main: Led 'L': 'color:': 'pink' is none of off, green, orange, red",
     );
     only(
+        "L Loop\nW Wait and send {keep=no}\nS Say\nL.OUT > W.DATA\nW.OUT > S.DATA",
+        "error: main: Wait and send 'W': 'keep': 'no' is none of true, false",
+    );
+    only(
         "A Sensor {VarName=sensorA9}\nS Say\nA.OUT > S.DATA",
         "error: main: Sensor 'A': 'Sensor': there is no sensor 'sensorA9'; did you mean 'sensorA1'?",
     );

@@ -3,7 +3,7 @@
 //! Owns the reading of property texts. Knows neither edges nor instances.
 
 use super::{At, Lowering, instance_is_first, shared};
-use crate::blocks::{Content, Does, EVALUATE, SYNCHRONIZED, Shape};
+use crate::blocks::{Content, Does, EVALUATE, PORT_OF_CALL, SYNCHRONIZED, Shape};
 use crate::machine::values;
 use crate::program::{Act, Camera, Flow, Formula, Op, Read, Source, Text, Words as Said};
 use crate::project::Block;
@@ -21,9 +21,9 @@ pub(crate) const DATA: &[&str] = &["data"];
 
 /// The port of a call that an input or output port shows, as the table writes it.
 pub(super) fn port_of_call(block: &Block) -> Option<&'static str> {
-    let property = block.row?.property("identifier")?;
+    let property = block.row?.property(PORT_OF_CALL)?;
     if let Content::Choice(choices) = property.content {
-        chosen(choices, block.text("identifier"))
+        chosen(choices, block.text(PORT_OF_CALL))
     } else {
         None
     }
@@ -35,6 +35,7 @@ const LOOP: [&str; 3] = ["start_border", "end_border", "increment"];
 impl<'a> Lowering<'a> {
     /// What a block does. What is wrong is told, and something harmless stands for it.
     pub(super) fn op(&mut self, at: At<'a>) -> Op {
+        self.check_flags(at);
         match at.row.does {
             Does::Stop => Flow::Stop.into(),
             Does::Function => self.function(at).into(),
@@ -173,7 +174,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn port_of_call(&mut self, at: At<'a>, flow: Flow) -> Op {
-        self.choice(at, "identifier");
+        self.choice(at, PORT_OF_CALL);
         flow.into()
     }
 
@@ -320,6 +321,20 @@ impl<'a> Lowering<'a> {
             self.warn(property_place(at, name), words::negative_time(time));
         }
         time.max(0) as u32
+    }
+
+    /// Flags that say neither `true` nor `false`: most words would count as true.
+    fn check_flags(&mut self, at: At<'a>) {
+        let flags = at.row.properties.iter();
+        for flag in flags.filter(|property| property.content == Content::Flag) {
+            let text = at.block.text(flag.name);
+            let is_plain = ["true", "false", "1", "0", ""]
+                .iter()
+                .any(|word| text.eq_ignore_ascii_case(word));
+            if !is_plain {
+                self.bad(at, flag.name, words::no_choice(text, &["true", "false"]));
+            }
+        }
     }
 
     /// One of the words that a property may have, as the table writes it.

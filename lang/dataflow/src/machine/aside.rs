@@ -102,7 +102,15 @@ impl Machine {
 
     /// The token that comes next gets the value of an expression, of the same kind as its own.
     fn assign_token(&mut self, token: &Value, text: &str) -> Result<(), Vec<Problem>> {
-        let value = self.evaluate_aside(text)?;
+        let mut value = self.evaluate_aside(text)?;
+        if let (Value::Int(_), &Value::Float(number)) = (token, &value) {
+            // Blocks that read it were prepared for a whole number.
+            let is_whole = number.fract() == 0.0 && f64::from(number as i32) == number;
+            if !is_whole {
+                return Err(vec![Problem::error(words::token_stays_whole())]);
+            }
+            value = Value::Int(number as i32);
+        }
         let why = match (kind_of(token), kind_of(&value)) {
             (None, _) => words::unit_stays(),
             (Some(was), Some(is)) if was == is && values::fits(&value) => {

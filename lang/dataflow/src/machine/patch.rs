@@ -245,7 +245,7 @@ impl Machine {
         let next = old.deliveries.front();
         let is_next_there = next.is_some_and(|next| moved(next).is_some());
         self.deliveries = old.deliveries.iter().filter_map(moved).collect();
-        self.move_stop(is_next_there);
+        self.move_stop(is_next_there, |node| kept.new_of[node as usize]);
         old.deliveries.len() - self.deliveries.len()
     }
 

@@ -231,13 +231,22 @@ impl Machine {
 
     /// Where it is stopped, in the new version. If the token that comes next is gone, the other ones go on, and the first of
     /// them is still to be looked at. So is one to which no block was about to react: in the new version one may be.
-    pub(super) fn move_stop(&mut self, is_next_there: bool) {
+    /// `moved` is what has become of a block.
+    pub(super) fn move_stop(
+        &mut self,
+        is_next_there: bool,
+        moved: impl Fn(NodeId) -> Option<NodeId>,
+    ) {
         self.stops.is_counted &= is_next_there;
         self.stops.may_pass &= self.stops.is_counted;
         let next = self.deliveries.front().cloned();
-        if let Some(stop) = &mut self.stops.stopped
-            && stop.next.is_some()
-        {
+        let Some(stop) = &mut self.stops.stopped else {
+            return;
+        };
+        if let Reason::Changed(change) = &mut stop.reason {
+            change.by = change.by.and_then(moved);
+        }
+        if stop.next.is_some() {
             stop.next = next;
             if !is_next_there {
                 stop.reason = Reason::Pause;

@@ -395,6 +395,13 @@ pub(crate) fn token_keeps_kind([english, russian]: [&str; 2]) -> Words {
     )
 }
 
+pub(crate) fn token_stays_whole() -> Words {
+    Words::new(
+        "the token that comes next is a whole number of at most 32 bits and stays one: the blocks after it expect that",
+        "следующее значение — целое число не больше чем в 32 бита, и другим стать не может: этого ждут блоки после него",
+    )
+}
+
 pub(crate) fn no_value_yet() -> Words {
     Words::new("no value yet", "значения ещё нет")
 }

@@ -135,11 +135,27 @@ fn another_main_diagram_is_run_if_it_is_asked_for() {
     project.choose("second").expect("a main diagram");
     assert_eq!(project.diagrams[project.main.unwrap()].name, "second");
     assert!(project.choose("control").is_err());
+    project.diagrams[0].name = "second".to_owned();
+    let why = project.choose("second").expect_err("two of them");
+    assert!(
+        why.in_locale(Locale::English)
+            .starts_with("several diagrams here have the name 'second'")
+    );
     let none = Project::default().choose("x").expect_err("nothing there");
     assert!(
         none.in_locale(Locale::English)
             .ends_with("none that can be run")
     );
+}
+
+#[test]
+fn the_diagram_that_is_run_is_the_first_one_of_a_save() {
+    let main = |name| diagram(name, DiagramKind::Main, "S Say");
+    let mut project = with_ids(made(vec![main("a"), main("b"), main("c")]));
+    project.main = Some(1);
+    let (read, _) = again(&project);
+    let names: Vec<&str> = read.diagrams.iter().map(|one| one.name.as_str()).collect();
+    assert_eq!((names, read.main), (vec!["b", "a", "c"], Some(0)));
 }
 
 #[test]

@@ -21,7 +21,7 @@ const FAR: f64 = 200_000.0;
 const UNKNOWN: (u16, u16) = (100, 100);
 /// Between two lines of text.
 const LINE: f64 = 12.0;
-/// Lines below a block: its caption, what it is, and properties.
+/// Lines below a block: its caption, what it is, and properties; one more says that there are others.
 const LINES: usize = 5;
 /// About the width of a letter.
 const LETTER: f64 = 5.6;
@@ -289,6 +289,7 @@ impl Frame {
             lines.push(("d", shortened(name, room)));
         }
         let inner = inner(block, size);
+        let mut is_cut = false;
         for one in changed(block) {
             let text = format!(
                 "{} = {}",
@@ -298,9 +299,15 @@ impl Frame {
             title.push('\n');
             title.push_str(&text);
             let is_inside = !inner.is_empty() && is_inner(block, one.name);
-            if lines.len() < LINES && !is_inside {
+            if !is_inside && lines.len() < LINES {
                 lines.push(("d", shortened(&text, room)));
+            } else {
+                is_cut |= !is_inside;
             }
+        }
+        if is_cut {
+            // The title has them all.
+            lines.push(("d", "...".to_owned()));
         }
         Self {
             at: corner(block),

@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 /// Between two columns, in pixels.
 const BESIDE: f64 = 100.0;
-/// Between two blocks of a column; captions stand there.
-const BENEATH: f64 = 60.0;
+/// Between two blocks of a column: six lines of words stand there.
+const BENEATH: f64 = 80.0;
 /// The size of a block that no row knows.
 const UNKNOWN: (u16, u16) = (100, 100);
 

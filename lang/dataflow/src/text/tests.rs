@@ -148,12 +148,12 @@ fn what_stands_nowhere_is_placed_by_its_distance_from_the_start() {
         places,
         [
             (0.0, 0.0),
-            (0.0, 175.0),
+            (0.0, 195.0),
             (200.0, 0.0),
-            (200.0, 370.0),
+            (200.0, 390.0),
             (560.0, 0.0),
-            (560.0, 370.0),
-            (560.0, 530.0),
+            (560.0, 390.0),
+            (560.0, 570.0),
             (920.0, 0.0),
         ]
     );
@@ -164,7 +164,7 @@ fn what_stands_nowhere_is_placed_by_its_distance_from_the_start() {
         .iter()
         .map(|block| block.position)
         .collect();
-    assert_eq!(places, [(5.0, -7.25), (0.0, 153.0), (200.0, 153.0)]);
+    assert_eq!(places, [(5.0, -7.25), (0.0, 173.0), (200.0, 173.0)]);
 }
 
 /// Everything that a line can say.

@@ -288,6 +288,27 @@ fn another_main_diagram_is_checked_debugged_and_written_as_a_converter() {
         let why = "there are: Says, Counter; did you mean 'Counter'?";
         assert!(refused.stdout.contains(why), "{}", refused.stdout);
     }
+    let other = debug(&board, &["run", "x.py", "--diagram", "Counter"], "");
+    let why = "--diagram is for diagrams (NAME.qrs, NAME.flow), and this is another program";
+    board.file("x.py", "print(1)");
+    for words in [["run", "x.py"], ["check", "x.py"]] {
+        let other = debug(&board, &[words[0], words[1], "--diagram", "Counter"], "");
+        let told = other.stdout + &other.stderr;
+        assert!(told.contains(why), "{told}");
+    }
+    assert!(
+        other.stderr.contains("there is no such file"),
+        "{}",
+        other.stderr
+    );
+    let large = format!("{both}{}", " ".repeat(16 << 20));
+    board.file("large.flow", large);
+    let large = debug(&board, &["run", "large.flow"], "");
+    assert!(
+        large.stderr.contains("longer than 16 MiB"),
+        "{}",
+        large.stderr
+    );
     let mut editor = Editor::start();
     let options = json!({"stopOnEntry": true, "diagram": "Counter"});
     editor.launch_file(&board, "both.qrs", options);

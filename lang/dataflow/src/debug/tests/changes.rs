@@ -136,6 +136,20 @@ fn a_program_that_is_stopped_is_changed_where_it_stands() {
 }
 
 #[test]
+fn a_block_that_changed_a_variable_may_go_while_it_is_stopped_for_that() {
+    let (mut desk, mut robot) = slow();
+    told(&mut desk, "attach");
+    told(&mut desk, "watch n");
+    runs(&mut desk, &mut robot, 0, 40);
+    assert!(told(&mut desk, "look").contains("\"by\":"));
+    desk.patch(&version("A Sensor"), &mut robot)
+        .expect("a change");
+    let seen = told(&mut desk, "look");
+    assert!(seen.contains("\"variable\":\"n\""), "{seen}");
+    assert!(!seen.contains("\"by\":"), "{seen}");
+}
+
+#[test]
 fn a_type_that_only_the_running_program_has_is_told() {
     let halves = "B Variable {variable=q = 2.5}\nA Sensor\nF Text programming {IO0=q * 2 + 0 * I0}\nM Motors\nA.OUT > F.I0\nF.O0 > M.M3";
     let (mut desk, mut robot) = (desk(halves), Robot::default());

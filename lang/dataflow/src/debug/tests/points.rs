@@ -355,6 +355,22 @@ fn the_token_that_comes_next_is_looked_at_and_changed() {
 }
 
 #[test]
+fn a_token_that_is_whole_stays_whole() {
+    let text = "V Value generator {varValue=10}\nM Motors\nV.OUT > M.M3";
+    let (mut desk, mut robot) = (desk(text), Robot::default());
+    told(&mut desk, "attach");
+    told(&mut desk, "break qrm:/main/M");
+    runs(&mut desk, &mut robot, 0, 40);
+    assert!(desk.is_stopped());
+    for wrong in ["2.5", "9999999999999", "0.0 / 0.0"] {
+        let answer = told(&mut desk, &format!("set data={wrong}"));
+        assert!(!answer.contains("\"done\":true"), "{wrong}: {answer}");
+    }
+    let told = told(&mut desk, "set data=2.0 * 3");
+    assert!(told.contains("\"type\":\"int\",\"value\":\"6\""), "{told}");
+}
+
+#[test]
 fn a_token_without_a_value_gets_none() {
     let text = "W Wait and send {time=20}\nM Motors\nW.CF_OUT > M.CF_IN";
     let (mut desk, mut robot) = (desk(text), Robot::default());
