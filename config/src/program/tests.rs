@@ -139,6 +139,21 @@ fn a_converter_is_found_through_groups_lists_and_attributes() {
 }
 
 #[test]
+fn a_node_may_be_called_as_the_key_of_a_source() {
+    let source = "local function f(n) return function(_, _, _, b) ba.set(b, 0, n) end end
+        local function node(n) return { src = '/dev/null', converter = f(n) } end
+        trikfs = { a = node(1), src = node(2), group = { b = node(3), src = node(4) } }";
+    let program = program(source);
+    for (node, value) in [("a", 1), ("src", 2), ("group/b", 3), ("group/src", 4)] {
+        let mut vm = program.open(node).unwrap();
+        let stage = vm.bind(node, Direction::Read, 0, 1, 1).unwrap();
+        let mut output = [0];
+        vm.convert(stage, &[0], &mut output).unwrap();
+        assert_eq!(output, [value], "{node}");
+    }
+}
+
+#[test]
 fn states_share_nothing() {
     let source = "local n = 0 trikfs = { x = { src = '/dev/null', converter = function(_, a, _, b) n = n + 1 ba.set(b, 0, n) end } }";
     let program = program(source);

@@ -307,19 +307,36 @@ unsafe fn get_raw(l: *mut lua::lua_State, index: c_int, name: &[u8]) {
     }
 }
 
+/// Whether the table on top is a node and no group: it has a source, which is no node that is called `src`.
+unsafe fn is_node(l: *mut lua::lua_State) -> bool {
+    // SAFETY: the caller is in a protected call with a table on top; only tables are indexed.
+    unsafe {
+        get_raw(l, -1, b"src");
+        let mut is_node = lua::lua_type(l, -1) != lua::LUA_TNIL;
+        if lua::lua_type(l, -1) == lua::LUA_TTABLE {
+            get_raw(l, -1, b"src");
+            get_raw(l, -2, b"");
+            let is_named_so = lua::lua_type(l, -2) != lua::LUA_TNIL;
+            let is_source = lua::lua_type(l, -1) != lua::LUA_TNIL;
+            lua::lua_settop(l, -3);
+            is_node = !is_named_so || is_source;
+        }
+        lua::lua_settop(l, -2);
+        is_node
+    }
+}
+
 /// Pushes the description of a node: a path through groups, and from a node through its attributes.
 unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(), Missing> {
     // SAFETY: the caller is in a protected call; only tables are indexed.
     unsafe {
         lua::lua_pushvalue(l, tree);
-        for segment in node.split('/') {
+        for (depth, segment) in node.split('/').enumerate() {
             if lua::lua_type(l, -1) != lua::LUA_TTABLE {
                 return Err(Missing::Node);
             }
-            get_raw(l, -1, b"src");
-            let is_node = lua::lua_type(l, -1) != lua::LUA_TNIL;
-            lua::lua_settop(l, -2);
-            if is_node {
+            // The tree itself is none, whatever its nodes are called.
+            if depth > 0 && is_node(l) {
                 get_raw(l, -1, b"attributes");
                 lua::lua_remove(l, -2);
                 if lua::lua_type(l, -1) != lua::LUA_TTABLE {
@@ -352,12 +369,7 @@ unsafe fn push_path(l: *mut lua::lua_State, node: &str) {
                 break;
             }
             get_raw(l, GROUP, segment.as_bytes());
-            let mut is_group = lua::lua_type(l, -1) == lua::LUA_TTABLE;
-            if is_group {
-                get_raw(l, -1, b"src");
-                is_group = lua::lua_type(l, -1) == lua::LUA_TNIL;
-                lua::lua_settop(l, -2);
-            }
+            let is_group = lua::lua_type(l, -1) == lua::LUA_TTABLE && !is_node(l);
             if is_group {
                 lua::lua_createtable(l, 0, 1);
             } else {

@@ -172,13 +172,21 @@ local function functions(chain)
   return list
 end
 
+-- Whether a table is a node and no group: it has a source, which is no node that is called `src`.
+local function is_node(from)
+  local src = rawget(from, 'src')
+  if type(src) ~= 'table' then return src ~= nil end
+  return rawget(src, 'src') == nil or rawget(src, '') ~= nil
+end
+
 -- A tree with nothing but what the host looks for: `src` tells a node from a group.
 local function sought()
   local root = {}
   local from, to = tree, root
   if type(from) ~= 'table' then return root end
   for i = 1, #segments do
-    if rawget(from, 'src') ~= nil then
+    -- The tree itself is no node, whatever its nodes are called.
+    if i > 1 and is_node(from) then
       to.src, to.attributes = true, {}
       from, to = rawget(from, 'attributes'), to.attributes
       if type(from) ~= 'table' then return root end
