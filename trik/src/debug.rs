@@ -145,8 +145,8 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
         ..Refusal::new(error.to_string())
     };
     let begun = match args.attach {
-        false => Debugged::launch(&args.file, diagram, robot),
-        true => Debugged::attach(robot),
+        false => Debugged::launch(&args.file, diagram, robot, args.world.language),
+        true => Debugged::attach(robot, args.world.language),
     };
     let mut target = begun.map_err(unreachable)?;
     if args.attach {

@@ -8,6 +8,7 @@ use super::session::{After, Begins, Session};
 use crate::check::Start;
 use crate::debug::listing::Listing;
 use crate::debug::stage::Stage;
+use crate::debug::stops::words;
 use crate::debug::target::{Changed, Target, Written};
 use crate::debug::{WorldArgs, listing};
 use crate::diagrams::flow::{self, Program};
@@ -163,8 +164,8 @@ impl Launch {
             }
         };
         let begun = match self.is_joining {
-            true => Debugged::attach(robot),
-            false => Debugged::launch(&self.program, self.diagram(), robot),
+            true => Debugged::attach(robot, self.locale()),
+            false => Debugged::launch(&self.program, self.diagram(), robot, self.locale()),
         };
         let mut target = match begun {
             Ok(target) => target,
@@ -251,16 +252,17 @@ impl Launch {
         };
         match target.change(&self.program, self.diagram(), Written::of(&opened)) {
             Ok(Changed::InForce(what)) => {
-                important(client, &format!("changed: {what}"));
+                important(client, words::changed(&what).in_locale(self.locale()));
                 *sheets = Sheets::of(&opened, self.world.language, now);
                 Restart::Changed
             }
             Ok(Changed::Wrong(why)) => {
-                Restart::Refused(format!("{why}\nwhat runs goes on as it was"))
+                let why = words::goes_on_as_it_was(&why);
+                Restart::Refused(why.in_locale(self.locale()).to_owned())
             }
             Ok(Changed::CannotBe(why)) if self.is_joining => Restart::Refused(why),
             Ok(Changed::CannotBe(why)) => {
-                important(client, &format!("the program begins anew: {why}"));
+                important(client, words::begins_anew(&why).in_locale(self.locale()));
                 Restart::Anew
             }
             Err(error) => Restart::Refused(error.to_string()),

@@ -4,6 +4,7 @@
 //! of `sim`, `lang-diagram` and `lang-dataflow`.
 
 use super::stops::words;
+use super::target::words::told;
 use super::target::{Changed, Channel, Event, Target, Written, lines, problems};
 use crate::check::{Ready, Staged, Start};
 use crate::error::Error;
@@ -13,7 +14,7 @@ use lang_dataflow::machine::patch as flow;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use serde_json::Value;
 use sim::judge::debugged::{self, Debugged, Refused, Version};
 use sim::judge::{Failure, Outcome, Progress, Settings, Task, Trial, Verdict};
@@ -261,7 +262,7 @@ impl Target for Stage<'_> {
         let patched = debugged::patch(trial, &mut self.program, &version);
         self.end_if_over();
         Ok(match patched {
-            Ok(patched) => Changed::InForce(patched),
+            Ok(patched) => Changed::InForce(told(&patched, locale)),
             Err(why) => Changed::CannotBe(explained(&why, locale)),
         })
     }
@@ -276,18 +277,12 @@ impl Target for Stage<'_> {
         true
     }
 
-    fn scene(&self, ms: u64) -> Option<String> {
+    fn scene(&self, ms: u64) -> Option<Words> {
         let before = self.poses.partition_point(|(at, _)| u64::from(*at) <= ms);
         let (at, [x, y, degrees]) = self.poses.get(before.checked_sub(1)?)?;
-        let task = if self.settings.is_marking {
-            ", markers draw"
-        } else {
-            ""
-        };
-        Some(format!(
-            "at {:.2} s the robot is at x {x:.1}, y {y:.1} px and looks to {:.1} degrees{task}",
-            f64::from(*at) / 1000.0,
-            degrees - 360.0 * (degrees / 360.0).round()
-        ))
+        let turned = degrees - 360.0 * (degrees / 360.0).round();
+        let seconds = f64::from(*at) / 1000.0;
+        let place = [*x, *y, turned];
+        Some(words::scene(seconds, place, self.settings.is_marking))
     }
 }

@@ -2,13 +2,16 @@
 //!
 //! Owns the border. Front ends (the terminal, an editor) know no more of a robot than this.
 
-use super::stops::words;
+/// What a robot answers to clients, in English and Russian.
+pub(crate) mod words;
+
+use super::stops::words as stops;
 use crate::diagrams::flow::{Flow, Program};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::machine::patch::Refused;
 use lang_diagram::project::Project;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;
@@ -49,7 +52,7 @@ pub(crate) trait Target {
     fn keeps_past(&self) -> bool;
 
     /// What the world looks like at a time of the program, in a line; none if nobody knows.
-    fn scene(&self, ms: u64) -> Option<String>;
+    fn scene(&self, ms: u64) -> Option<Words>;
 }
 
 /// A program as its file has it.
@@ -105,7 +108,7 @@ pub(crate) enum Channel {
 /// Why a version is refused, a line for each problem.
 pub(crate) fn problems(why: &Refused, locale: Locale) -> String {
     match why {
-        Refused::Ended => words::in_locale(locale, words::has_ended()),
+        Refused::Ended => stops::in_locale(locale, stops::has_ended()),
         Refused::Mistakes(_) | Refused::Occupied(_) => lines(why.problems(), locale),
     }
 }

@@ -160,7 +160,7 @@ impl<'a> Terminal<'a> {
                 self.variables()
             }
             Typed::Scene => match self.target.scene(self.told.ms) {
-                Some(scene) => self.say(&scene),
+                Some(scene) => self.says(scene),
                 None => self.says(words::scene_unknown()),
             },
             Typed::Reload => self.reload(),

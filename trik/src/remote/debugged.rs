@@ -5,13 +5,14 @@
 
 use super::link::{Link, Message, ms};
 use super::upload::Upload;
+use crate::debug::target::words;
 use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::Version;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::path::Path;
@@ -31,6 +32,8 @@ enum Begun {
 /// A diagram on a robot.
 pub(crate) struct Debugged {
     link: Link,
+    /// The language of who debugs.
+    locale: Locale,
     tag: u64,
     begun: Begun,
     /// What has come and was not asked for yet.
@@ -51,11 +54,12 @@ impl Debugged {
         path: &Path,
         diagram: Option<&str>,
         at: &super::target::Target,
+        locale: Locale,
     ) -> Result<Self, Error> {
         let upload = Upload::read(path, diagram)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
-        let mut debugged = Self::over(link, Begun::Here);
+        let mut debugged = Self::over(link, Begun::Here, locale);
         debugged.must(&format!("run {}", upload.name))?;
         // What was told before is of the program that ran until then.
         debugged.events.clear();
@@ -67,8 +71,8 @@ impl Debugged {
     ///
     /// # Errors
     /// A sentence: the robot cannot be reached, no diagram runs there, or somebody else is in control.
-    pub(crate) fn attach(at: &super::target::Target) -> Result<Self, Error> {
-        let mut debugged = Self::over(at.connect()?, Begun::Elsewhere);
+    pub(crate) fn attach(at: &super::target::Target, locale: Locale) -> Result<Self, Error> {
+        let mut debugged = Self::over(at.connect()?, Begun::Elsewhere, locale);
         let answer = debugged.must(&Order::Attach.to_string())?;
         if let Some(program) = answer.get("program") {
             debugged.events.push_back(Event::Report(program.clone()));
@@ -76,9 +80,10 @@ impl Debugged {
         Ok(debugged)
     }
 
-    fn over(link: Link, begun: Begun) -> Self {
+    fn over(link: Link, begun: Begun, locale: Locale) -> Self {
         Self {
             link,
+            locale,
             tag: 0,
             begun,
             events: VecDeque::new(),
@@ -102,7 +107,10 @@ impl Debugged {
         self.link.ask(&[request.as_bytes()]);
         let deadline = Instant::now() + ms(limits::ANSWER_MS);
         while Instant::now() < deadline {
-            if let Some(answer) = self.take()? {
+            if let Some(mut answer) = self.take()? {
+                if let Some(why) = why_not(&answer) {
+                    answer["why"] = Value::String(words::told(&why, self.locale));
+                }
                 return Ok(answer);
             }
             self.link.turn(ms(limits::TURN_MS), None, true)?;
@@ -127,9 +135,10 @@ impl Debugged {
         };
         let what = text.strip_prefix(name).unwrap_or(text);
         let what = what.split_once(": ").map_or(what, |(_, what)| what);
+        let what = words::told(what, self.locale);
         self.is_changed = Some(match is_changed {
-            true => Changed::InForce(what.to_owned()),
-            false => Changed::CannotBe(what.to_owned()),
+            true => Changed::InForce(what),
+            false => Changed::CannotBe(what),
         });
         true
     }
@@ -162,7 +171,9 @@ impl Debugged {
                     }
                     self.hear(told);
                 }
-                Message::Error(text) if text == news::NOT_PAIRED => return Err(Error::Robot(text)),
+                Message::Error(text) if text == news::NOT_PAIRED => {
+                    return Err(Error::Robot(words::told(&text, self.locale)));
+                }
                 Message::Error(text) | Message::Info(text) if self.is_answer(&text) => {}
                 Message::Error(text) => {
                     self.link.remember(&text);
@@ -189,13 +200,14 @@ impl Debugged {
         }
         if told.get("state").and_then(Value::as_str) == Some("gone") {
             self.is_gone = true;
-            self.put(Event::Over("the program has ended".to_owned()));
+            let over = words::told(news::HAS_ENDED, self.locale);
+            self.put(Event::Over(over));
             return;
         }
         if let Some(control) = told.get("control") {
             let control = control.as_str().unwrap_or("nobody");
             if control != self.link.own_address() {
-                let text = format!("{control} is in control");
+                let text = words::told(&format!("{control} is in control"), self.locale);
                 self.put(Event::Said(Channel::Message, text));
             }
             return;
@@ -249,11 +261,11 @@ impl Target for Debugged {
         let mistakes = match version {
             Written::Diagram(project) => {
                 let version = Version::of(project, World::Robot);
-                version.err().map(|why| problems(&why, Locale::English))
+                version.err().map(|why| problems(&why, self.locale))
             }
             Written::Flow(flow) => {
                 let mistakes = flow.ready().err();
-                mistakes.map(|wrong| flow.lines(file, &wrong, Locale::English).join("\n"))
+                mistakes.map(|wrong| flow.lines(file, &wrong, self.locale).join("\n"))
             }
         };
         if let Some(mistakes) = mistakes {
@@ -279,7 +291,7 @@ impl Target for Debugged {
         false
     }
 
-    fn scene(&self, _ms: u64) -> Option<String> {
+    fn scene(&self, _ms: u64) -> Option<Words> {
         None
     }
 

@@ -9,6 +9,7 @@ use super::target::{Target, target, the_one};
 use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::{Report, State};
 use crate::debug::stops;
+use crate::debug::target::words;
 use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
 use crate::error::Error;
 use crate::language;
@@ -18,7 +19,7 @@ use crate::terminal::harmless;
 use clap::{Args, ValueEnum};
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Breakpoint, Step};
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -104,14 +105,14 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
     let listing = listing(&args.at)?;
     let point = match args.change {
         true => Breakpoint::of_changes(args.place.trim()),
-        false => Breakpoint::before(block(&args.place, listing.as_ref())?),
+        false => Breakpoint::before(block(&args.place, listing.as_ref(), args.at.language)?),
     };
     let point = Breakpoint {
         is_once: true,
         condition: args.condition.as_deref().unwrap_or_default().trim().into(),
         ..point
     };
-    let mut robot = attached(args.at.robot.as_ref())?;
+    let mut robot = attached(args.at.robot.as_ref(), args.at.language)?;
     let talked = (|| {
         // It may come there before it can be looked at again.
         let before = ordered(&mut robot, &Order::Look)?;
@@ -141,7 +142,7 @@ pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
         StepKind::Out => Order::Step(Step::Out, None),
         StepKind::Back => Order::Back(Back::Step(Step::Over)),
     };
-    let mut robot = attached(args.at.robot.as_ref())?;
+    let mut robot = attached(args.at.robot.as_ref(), args.at.language)?;
     let talked = (|| {
         if let Reply::State(told) = ordered(&mut robot, &Order::Look)?
             && told.state == State::Running
@@ -159,7 +160,7 @@ pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
 /// # Errors
 /// The robot is gone.
 pub(crate) fn go_on(args: &ContinueArgs) -> Result<u8, Refusal> {
-    let mut robot = attached(args.robot.as_ref())?;
+    let mut robot = attached(args.robot.as_ref(), Locale::English)?;
     robot.close();
     Ok(0)
 }
@@ -184,10 +185,10 @@ fn ordered(robot: &mut Debugged, order: &Order) -> Result<Reply, Error> {
     Ok(told.map_or(Reply::Done, |told| Reply::State(Box::new(told))))
 }
 
-fn attached(robot: Option<&Target>) -> Result<Debugged, Refusal> {
+fn attached(robot: Option<&Target>, locale: Locale) -> Result<Debugged, Refusal> {
     let begun = match robot {
-        Some(robot) => Debugged::attach(robot),
-        None => the_one().and_then(|robot| Debugged::attach(&robot)),
+        Some(robot) => Debugged::attach(robot, locale),
+        None => the_one().and_then(|robot| Debugged::attach(&robot, locale)),
     };
     begun.map_err(unreachable)
 }
@@ -206,31 +207,28 @@ fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
 }
 
 /// The block of a line, a label or an id.
-fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
+fn block(place: &str, listing: Option<&Listing>, locale: Locale) -> Result<Box<str>, Refusal> {
     let place = place.trim();
-    let none = |why: &str| Refusal {
+    let none = |why: Words| Refusal {
         code: UNREADABLE,
-        ..Refusal::new(format!("'{}': {why}", harmless(place)))
+        ..Refusal::new(format!("'{}': {}", harmless(place), why.in_locale(locale)))
     };
     match (place.parse::<usize>(), listing) {
         (Ok(line), Some(listing)) => {
             let line = listing.line_with_block(line);
             let block = line.and_then(|line| listing.blocks(line).first().cloned());
-            block.ok_or_else(|| none("the diagram has no such line"))
+            block.ok_or_else(|| none(words::no_such_line()))
         }
-        (Ok(_), None) => Err(none("lines and labels are those of --file FILE")),
+        (Ok(_), None) => Err(none(words::lines_need_file())),
         (Err(_), Some(listing)) => {
             let id = listing.id_of(place).map(Into::into);
             id.ok_or_else(|| {
                 let near = listing.near_label(place);
-                let near = near.map_or_else(String::new, |near| near.english);
-                none(&format!("the program has no such block{near}"))
+                none(words::no_such_block(near))
             })
         }
         // An id has a slash or a brace; the robot knows no others.
-        (Err(_), None) if !place.contains(['/', '{']) => {
-            Err(none("lines and labels are those of --file FILE"))
-        }
+        (Err(_), None) if !place.contains(['/', '{']) => Err(none(words::lines_need_file())),
         (Err(_), None) => Ok(place.into()),
     }
 }
@@ -255,7 +253,7 @@ fn finish(
     };
     while told.state.is_under_way() {
         if until.is_some_and(|until| Instant::now() >= until) {
-            say("it has not come there; the program goes on");
+            say(words::not_come().in_locale(at.language));
             robot.close();
             return Ok(1);
         }

@@ -10,6 +10,7 @@ use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::Report;
 use crate::debug::stops::words;
 use crate::debug::target::why_not;
+use crate::debug::target::words::{ctrl_c_ends, seconds as unit, told};
 use crate::error::Error;
 use crate::language;
 use crate::limits;
@@ -85,10 +86,9 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         let answer = look(&mut link, tag)?;
         if let Some(why) = why_not(&answer) {
             let is_end = has_seen && why == news::NO_DIAGRAM;
-            say(&if is_end {
-                "the program has ended".to_owned()
-            } else {
-                why
+            say(&match is_end {
+                true => words::in_locale(args.language, words::has_ended()),
+                false => told(&why, args.language),
             });
             return Ok(u8::from(!is_end));
         }
@@ -158,7 +158,9 @@ impl<'a> Picture<'a> {
             // To the top, each line to its end, and nothing below.
             let mut text = String::from("\x1b[H");
             let seconds = told.ms as f64 / 1000.0;
-            text.push_str(&format!("{seconds:.1} s, Ctrl-C ends\x1b[K\n\x1b[K\n"));
+            let (s, end) = (unit().in_locale(self.locale).to_owned(), ctrl_c_ends());
+            let end = end.in_locale(self.locale);
+            text.push_str(&format!("{seconds:.1} {s}, {end}\x1b[K\n\x1b[K\n"));
             for line in &lines {
                 text.push_str(line);
                 text.push_str("\x1b[K\n");
@@ -173,7 +175,9 @@ impl<'a> Picture<'a> {
         }
         if lines != self.last {
             let seconds = told.ms as f64 / 1000.0;
-            writeln!(out, "{seconds:.2} s  {}", lines.join("; "))?;
+            let s = unit();
+            let s = s.in_locale(self.locale);
+            writeln!(out, "{seconds:.2} {s}  {}", lines.join("; "))?;
             self.last = lines;
             out.flush()?;
         }

@@ -170,7 +170,7 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
 fn the_debugger_speaks_russian_where_the_diagram_does() {
     let board = Board::new();
     board.file("count.qrs", counting());
-    let typed = "help\nfly\nback noon\nwatch n if n > 3\nbreak 4 if n = 3\ndelete 7\nc\nrc\npresent\ni b\nrelease x\ni t\nd\nc\ni t\nq\n";
+    let typed = "help\nfly\nback noon\nwatch n if n > 3\nbreak 4 if n = 3\ndelete 7\nc\nrc\npresent\ni b\nrelease x\ni t\nwhere\nreload\nd\nc\ni t\nq\n";
     let words = ["debug", "count.qrs", "--language", "ru"];
     let told = debug(&board, &words, typed).good();
     insta::assert_snapshot!(told);
@@ -317,6 +317,16 @@ fn a_person_is_asked_and_a_program_is_watched() {
 
     let nothing = home.run(&["watch", "--robot", robot.ip()]);
     assert_eq!(nothing.code(), 1, "{}", nothing.stdout);
+    assert!(
+        nothing.stderr.contains("no diagram runs"),
+        "{}",
+        nothing.stderr
+    );
+    // Its letters are not in this file.
+    let russian = home.run(&["watch", "--language", "ru", "--robot", robot.ip()]);
+    assert_eq!(russian.code(), 1, "{}", russian.stdout);
+    assert!(!russian.stderr.is_ascii(), "{}", russian.stderr);
+    assert!(!russian.stderr.contains("diagram"), "{}", russian.stderr);
     let file = home.0.file("drive.qrs", driving());
     let file = file.to_str().expect("UTF-8").to_owned();
     let running = robot.spawn_file(&file);

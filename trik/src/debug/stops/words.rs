@@ -27,6 +27,22 @@ pub(crate) fn scene_unknown() -> Words {
     )
 }
 
+/// Where a robot is at a time in seconds, in pixels and degrees.
+pub(crate) fn scene(seconds: f64, [x, y, degrees]: [f64; 3], is_marking: bool) -> Words {
+    let (english, russian) = match is_marking {
+        true => (", markers draw", ", маркеры рисуют"),
+        false => ("", ""),
+    };
+    Words::new(
+        format!(
+            "at {seconds:.2} s the robot is at x {x:.1}, y {y:.1} px and looks to {degrees:.1} degrees{english}"
+        ),
+        format!(
+            "в {seconds:.2} с робот в точке x {x:.1}, y {y:.1} px и смотрит на {degrees:.1} градуса{russian}"
+        ),
+    )
+}
+
 pub(crate) fn ended_at(time: &str) -> Words {
     Words::new(
         format!("the program has ended at {time}"),
@@ -57,6 +73,20 @@ pub(crate) fn watches(number: &str, variable: &str) -> Words {
 
 pub(crate) fn changed(what: &str) -> Words {
     Words::new(format!("changed: {what}"), format!("изменено: {what}"))
+}
+
+pub(crate) fn goes_on_as_it_was(why: &str) -> Words {
+    Words::new(
+        format!("{why}\nwhat runs goes on as it was"),
+        format!("{why}\nто, что выполняется, не изменилось"),
+    )
+}
+
+pub(crate) fn begins_anew(why: &str) -> Words {
+    Words::new(
+        format!("the program begins anew: {why}"),
+        format!("программа начинается сначала: {why}"),
+    )
 }
 
 pub(crate) fn unchanged(why: &str) -> Words {
