@@ -1,12 +1,14 @@
 //! `trik dap`: diagrams in the debugger of an editor, by the Debug Adapter Protocol.
 //!
-//! Owns how a client comes: over standard input and output, or over TCP, one after the other. `session` is a talk, `client`
+//! Owns how a client comes: over standard input and output, or over TCP, one after the other. `greeting` begins a talk, `session` is one, `client`
 //! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
-//! `debug`.
+//! `debug`; a program in Python is debugged by debugpy, and `python` stands between that and the client.
 
 mod client;
+mod greeting;
 mod launch;
 mod points;
+mod python;
 mod session;
 mod view;
 
@@ -40,7 +42,7 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
     let Some(address) = args.listen else {
         // Standard output belongs to the protocol.
-        session::serve(Client::new(io::stdin(), Box::new(io::stdout())));
+        greeting::serve(Client::new(io::stdin(), Box::new(io::stdout())));
         return Ok(0);
     };
     let failed = |why: io::Error| Refusal {
@@ -57,6 +59,6 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
         };
         // Small frames go at once.
         let _ = stream.set_nodelay(true);
-        session::serve(Client::new(input, Box::new(stream)));
+        greeting::serve(Client::new(input, Box::new(stream)));
     }
 }

@@ -1,7 +1,7 @@
 //! Robots that are reached over the network, real or virtual: `trik run`, `set`, `watch`, `break`, `step`, `stop`, `status`, `send`.
 //!
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
-//! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `step` gives one order, `fleet` does something with several
+//! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `relay` lets it in when it connects to a debugger here, `step` gives one order, `fleet` does something with several
 //! robots at once, `output` is where a program's text goes, `person` who
 //! answers its questions, `recorded` fetches recordings.
 
@@ -12,6 +12,7 @@ pub(crate) mod live;
 mod output;
 mod person;
 pub(crate) mod recorded;
+mod relay;
 pub(crate) mod run;
 pub(crate) mod step;
 pub(crate) mod target;

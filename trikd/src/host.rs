@@ -106,6 +106,7 @@ impl Host {
                 | ToProgram::Watch(_)
                 | ToProgram::Patch { .. }
                 | ToProgram::Set(_)
+                | ToProgram::Debugpy { .. }
                 | ToProgram::Debug { .. }
                 | ToProgram::DebugLeft
                 | ToProgram::Reply { .. },
@@ -342,6 +343,7 @@ fn incoming(frame: &str) -> Option<Incoming> {
         | ToProgram::Script(_)
         | ToProgram::Start
         | ToProgram::Debugged(_)
+        | ToProgram::Debugpy { .. }
         | ToProgram::Answer(_) => None,
     }
 }

@@ -61,6 +61,8 @@ struct Current {
     has_asked_nobody: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
+    /// It is a Python program that somebody debugs.
+    is_under_debugpy: bool,
     /// A process of it that stood still, and at how many looks in a row.
     still: (Option<Pid>, u32),
     meter: Meter,
@@ -175,7 +177,7 @@ impl Supervisor {
             Command::Set(text) => self.set(&text),
             Command::Reply(number, text) => self.reply(number, text.as_deref()),
             Command::Debug(asked, wish) => self.debug(asked, wish).await,
-            Command::DebugLeft => self.debugger_left(),
+            Command::DebugLeft => self.debugger_left().await,
             Command::Stop(who) => {
                 let ran = self.current.is_some();
                 self.end(Cause::Ordered(who)).await;
@@ -311,6 +313,7 @@ impl Supervisor {
             has_reported_error: false,
             has_asked_nobody: false,
             is_watched: false,
+            is_under_debugpy: false,
             still: (None, 0),
             meter: Meter::default(),
             web: Vec::new(),

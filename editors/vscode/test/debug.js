@@ -1,10 +1,13 @@
-// A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP.
+// A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP; and programs in
+// Python on a virtual robot, if TRIK_DEBUGPY_PYTHON names the python3 of an environment that has debugpy.
 //
 // usage: node test/debug.js TRIK
 "use strict";
 
 const assert = require("assert");
 const { spawn } = require("child_process");
+const fs = require("fs");
+const os = require("os");
 const path = require("path");
 const { DebugClient } = require("@vscode/debugadapter-testsupport");
 
@@ -79,6 +82,99 @@ async function talk(client) {
   await client.disconnectRequest();
 }
 
+// Some time for the processes on both sides.
+const PATIENCE = 60_000;
+
+const soon = (client, event) => client.waitForEvent(event, PATIENCE);
+
+async function begun(client, args) {
+  client.defaultTimeout = PATIENCE;
+  await client.initializeRequest();
+  const initialized = soon(client, "initialized");
+  const launched = client.launchRequest(args);
+  // It is answered after configurationDone.
+  launched.catch(() => undefined);
+  await initialized;
+  // Not the promise alone: to return it would be to wait for it.
+  return { launched };
+}
+
+// Breakpoints, threads, stack, variables, a step, an error, an end: all pass through to debugpy.
+async function python(client, robot) {
+  const file = path.join(robot.folder, "turn.py");
+  fs.writeFileSync(file, "def double(k):\n    return k * 2\nn = double(21)\nprint('n is', n)\nprint(n / 0)\n");
+  const { launched } = await begun(client, { program: file, robot: robot.tree, python: process.env.TRIK_DEBUGPY_PYTHON });
+  const set = await client.setBreakpointsRequest({ source: { path: file }, breakpoints: [{ line: 2 }] });
+  assert.strictEqual(set.body.breakpoints[0].verified, true);
+  await client.setExceptionBreakpointsRequest({ filters: ["uncaught"] });
+  let stopped = soon(client, "stopped");
+  await client.configurationDoneRequest();
+  await launched;
+  const { threadId } = (await stopped).body;
+  const threads = await client.threadsRequest();
+  assert.deepStrictEqual(threads.body.threads, [{ id: threadId, name: "MainThread" }]);
+  const stack = await client.stackTraceRequest({ threadId });
+  assert.deepStrictEqual(stack.body.stackFrames.slice(0, 2).map((frame) => frame.line), [2, 3]);
+  const frameId = stack.body.stackFrames[0].id;
+  const scopes = await client.scopesRequest({ frameId });
+  const variables = await client.variablesRequest({ variablesReference: scopes.body.scopes[0].variablesReference });
+  assert.strictEqual(variables.body.variables.find((one) => one.name === "k").value, "21");
+  const value = await client.evaluateRequest({ expression: "k + 1", frameId, context: "watch" });
+  assert.strictEqual(value.body.result, "22");
+  stopped = soon(client, "stopped");
+  await client.stepOutRequest({ threadId });
+  assert.strictEqual((await stopped).body.reason, "step");
+  await assert.rejects(client.customRequest("stepBack", { threadId }), /cannot be taken back/);
+  stopped = soon(client, "stopped");
+  await client.continueRequest({ threadId });
+  assert.strictEqual((await stopped).body.reason, "exception");
+  const ended = soon(client, "terminated");
+  await client.continueRequest({ threadId });
+  await ended;
+  await client.disconnectRequest();
+}
+
+// A virtual robot whose programs run in the environment that has debugpy.
+async function virtual(trik) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "trik-dap-"));
+  const tree = path.join(folder, "robot");
+  const bin = path.dirname(process.env.TRIK_DEBUGPY_PYTHON);
+  const lua = path.resolve(process.env.TRIK_LUA || path.join(path.dirname(trik), "..", "..", "config", "lua"));
+  const env = { ...process.env, XDG_RUNTIME_DIR: folder, PATH: `${bin}:${process.env.PATH}` };
+  process.env.XDG_RUNTIME_DIR = folder;
+  const words = ["up", "--no-view", "--no-page", "--trikd-ports", "0", "--include", lua, tree];
+  const up = spawn(trik, words, { env, stdio: ["ignore", "pipe", "ignore"] });
+  await new Promise((done, failed) => {
+    up.stdout.once("data", done);
+    up.once("exit", () => failed(new Error("there is no virtual robot")));
+  });
+  const end = async () => {
+    const gone = new Promise((done) => up.once("exit", done));
+    up.kill();
+    await gone;
+    fs.rmSync(folder, { recursive: true, force: true });
+  };
+  return { folder, tree, end };
+}
+
+async function texts(trik) {
+  if (!process.env.TRIK_DEBUGPY_PYTHON) {
+    console.log("skipped: programs in Python: TRIK_DEBUGPY_PYTHON is not set");
+    return;
+  }
+  const robot = await virtual(trik);
+  try {
+    for (const talk of [python]) {
+      const client = new DebugClient(trik, "dap", "trik");
+      await client.start();
+      await talk(client, robot);
+    }
+  } finally {
+    await robot.end();
+  }
+  console.log("the debugger: programs in Python on a virtual robot");
+}
+
 async function main() {
   const trik = process.argv[2];
   const streams = new DebugClient(trik, "dap", "trik");
@@ -99,6 +195,7 @@ async function main() {
   await talk(wire);
   server.kill();
   console.log("the debugger: every request over standard streams and TCP");
+  await texts(trik);
 }
 
 main().then(

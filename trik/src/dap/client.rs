@@ -18,6 +18,16 @@ pub(super) struct Request {
 }
 
 impl Request {
+    /// As it came, for another adapter.
+    pub fn whole(&self) -> Value {
+        json!({
+            "seq": self.seq,
+            "type": "request",
+            "command": self.command,
+            "arguments": self.arguments,
+        })
+    }
+
     /// An argument that is a text.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.arguments.get(name)?.as_str()
@@ -139,6 +149,11 @@ impl Client {
                 message["message"] = Value::String(why);
             }
         }
+        self.send(message);
+    }
+
+    /// Passes on what another adapter says to this client.
+    pub fn pass(&mut self, message: Value) {
         self.send(message);
     }
 

@@ -1,4 +1,4 @@
-//! A talk with an editor: from `initialize` to the end of the program, or of the editor's patience.
+//! A talk with an editor about a program of blocks: to the end of the program, or of the editor's patience.
 //!
 //! Owns the order of the protocol and what each request does. The program begins stopped; it goes on when the editor has
 //! said all its breakpoints. Between requests it runs in small pieces, so that no request waits for long.
@@ -41,65 +41,6 @@ pub(super) enum After {
     End,
     /// It begins anew, or becomes another version; this request is answered then. And whether its run is over.
     Again(Request, bool),
-}
-
-/// Serves one client.
-pub(super) fn serve(mut client: Client) {
-    loop {
-        let request = match client.next(PATIENCE) {
-            Incoming::Request(request) => request,
-            Incoming::Nothing => continue,
-            Incoming::End => return,
-        };
-        match request.command.as_str() {
-            "initialize" => client.answer(&request, Ok(capabilities())),
-            "launch" | "attach" => {
-                if let Some(launch) = Launch::read(&request, &mut client)
-                    && launch.serve(request, &mut client)
-                {
-                    return;
-                }
-            }
-            "disconnect" | "terminate" => {
-                client.answer(&request, Ok(Value::Null));
-                if request.command == "disconnect" {
-                    return;
-                }
-            }
-            _ => client.answer(&request, Err(Refused::new("launch a program first"))),
-        }
-    }
-}
-
-/// What the protocol lets an adapter do, and this one does.
-fn capabilities() -> Value {
-    let mut all = json!({
-        "exceptionBreakpointFilters": [{"filter": "errors", "label": "Errors in blocks", "default": true}],
-        "completionTriggerCharacters": [],
-    });
-    for name in [
-        "supportsConfigurationDoneRequest",
-        "supportsFunctionBreakpoints",
-        "supportsConditionalBreakpoints",
-        "supportsHitConditionalBreakpoints",
-        "supportsLogPoints",
-        "supportsInstructionBreakpoints",
-        "supportsDataBreakpoints",
-        "supportsStepBack",
-        "supportsSetVariable",
-        "supportsSetExpression",
-        "supportsEvaluateForHovers",
-        "supportsCompletionsRequest",
-        "supportsRestartRequest",
-        "supportsTerminateRequest",
-        "supportsBreakpointLocationsRequest",
-        "supportsExceptionInfoRequest",
-        "supportsLoadedSourcesRequest",
-        "supportsCancelRequest",
-    ] {
-        all[name] = Value::Bool(true);
-    }
-    all
 }
 
 /// A program that is debugged.

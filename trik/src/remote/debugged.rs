@@ -4,6 +4,7 @@
 //! with it, in `debug`.
 
 use super::link::{Link, Message, ms};
+use super::relay::Relay;
 use super::upload::Upload;
 use crate::debug::target::words;
 use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
@@ -39,6 +40,8 @@ pub(crate) struct Debugged {
     /// What has come and was not asked for yet.
     events: VecDeque<Event>,
     is_gone: bool,
+    /// A program in Python: its name, and where it connects to its debugger.
+    python: Option<(String, Option<Relay>)>,
     /// The program whose change is waited for, and what has become of it.
     awaits: Option<String>,
     is_changed: Option<Changed>,
@@ -80,6 +83,57 @@ impl Debugged {
         Ok(debugged)
     }
 
+    /// Sends a program in Python to a robot, where it waits for its debugger; also gives the folder that it is in there.
+    ///
+    /// # Errors
+    /// A sentence: the robot cannot be reached, or refuses.
+    pub(crate) fn python(
+        path: &Path,
+        at: &super::target::Target,
+        locale: Locale,
+    ) -> Result<(Self, String), Error> {
+        let upload = Upload::read(path)?;
+        let mut link = at.connect()?;
+        upload.send(&mut link, |_, _| {})?;
+        let own = |error| Error::system("a port for debugpy", error);
+        let (here, there) = link.addresses().map_err(own)?;
+        let relay = Relay::new(here, there).map_err(own)?;
+        let port = relay.port().map_err(own)?;
+        let mut debugged = Self::over(link, Begun::Here, locale);
+        // Before it begins: it may end as soon as that.
+        debugged.python = Some((upload.name.clone(), Some(relay)));
+        let answer = debugged.must(&format!("python {port} {}", upload.name))?;
+        let folder = answer.get("folder").and_then(Value::as_str);
+        let folder = folder.unwrap_or_default().to_owned();
+        Ok((debugged, folder))
+    }
+
+    /// The debugger of a program in Python listens at this port of 127.0.0.1.
+    pub(crate) fn lead_to(&mut self, port: u16) {
+        if let Some((_, Some(relay))) = &mut self.python {
+            relay.lead_to(port);
+        }
+    }
+
+    fn let_in(&mut self) -> Result<(), Error> {
+        if let Some((_, relay)) = &mut self.python
+            && let Some(waits) = relay
+        {
+            let is_in = waits.turn();
+            let lost = |error| Error::system("the connection of the program to debugpy", error);
+            if is_in.map_err(lost)? {
+                *relay = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a text tells the end of the program in Python.
+    fn is_end(&self, text: &str) -> bool {
+        let name = self.python.as_ref().map(|(name, _)| name.as_str());
+        name.is_some_and(|name| news::ended(text, name).is_some())
+    }
+
     fn over(link: Link, begun: Begun, locale: Locale) -> Self {
         Self {
             link,
@@ -88,6 +142,7 @@ impl Debugged {
             begun,
             events: VecDeque::new(),
             is_gone: false,
+            python: None,
             awaits: None,
             is_changed: None,
         }
@@ -160,6 +215,7 @@ impl Debugged {
 
     /// Takes what has come; the answer to the last order, if it is among it.
     fn take(&mut self) -> Result<Option<Value>, Error> {
+        self.let_in()?;
         while let Some(message) = self.link.next() {
             match message {
                 Message::Debug(text) => {
@@ -175,6 +231,10 @@ impl Debugged {
                     return Err(Error::Robot(words::told(&text, self.locale)));
                 }
                 Message::Error(text) | Message::Info(text) if self.is_answer(&text) => {}
+                Message::Error(text) | Message::Info(text) if self.is_end(&text) => {
+                    self.is_gone = true;
+                    self.put(Event::Over(text));
+                }
                 Message::Error(text) => {
                     self.link.remember(&text);
                     self.put(Event::Said(Channel::Message, text));

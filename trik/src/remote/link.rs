@@ -7,7 +7,7 @@ use crate::limits;
 use frame::{Decoder, encode};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::net::{IpAddr, SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
@@ -104,6 +104,15 @@ impl Link {
     pub(super) fn own_address(&self) -> String {
         let address = self.stream.local_addr();
         address.map_or_else(|_| String::new(), |address| address.to_string())
+    }
+
+    /// Our address and that of the robot.
+    ///
+    /// # Errors
+    /// The connection is lost.
+    pub(super) fn addresses(&self) -> io::Result<(IpAddr, IpAddr)> {
+        let (own, robot) = (self.stream.local_addr()?, self.stream.peer_addr()?);
+        Ok((own.ip(), robot.ip()))
     }
 
     /// Bytes that are not on their way yet.

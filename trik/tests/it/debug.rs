@@ -4,6 +4,8 @@
 mod dap;
 /// Data-flow programs in a simulated world.
 mod flow;
+/// Programs in Python under debugpy.
+mod python;
 
 use crate::programs::Reachable;
 use crate::rig::TRIK;

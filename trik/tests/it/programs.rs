@@ -39,6 +39,14 @@ impl Reachable {
         Self { robot, ip }
     }
 
+    /// One in a home of its own, whose programs find what is in this directory first.
+    pub fn with(bin: &std::path::Path) -> Option<Self> {
+        let ip = loopback();
+        let home = Arc::new(Home::new()?);
+        let robot = Robot::start_with(home, &["--trikd-address", &ip], bin);
+        Some(Self { robot, ip })
+    }
+
     /// Writes a program and runs it here.
     pub fn run(&self, name: &str, text: impl AsRef<[u8]>) -> Output {
         let file = self.robot.home.0.file(name, text);

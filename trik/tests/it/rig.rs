@@ -119,6 +119,16 @@ impl Robot {
         Self::begin(home, command, words)
     }
 
+    /// The same, whose programs find what is in this directory first.
+    pub fn start_with(home: Arc<Home>, words: &[&str], bin: &Path) -> Self {
+        let cache = home.0.path("cache");
+        let mut command = home.command(&["up", "--cache"]);
+        let path = std::env::var("PATH").unwrap_or_default();
+        command.arg(cache);
+        command.env("PATH", format!("{}:{path}", bin.display()));
+        Self::begin(home, command, words)
+    }
+
     /// The tree of a recording of this home; `devices` is the folder of its player.
     pub fn replay(home: Arc<Home>, recording: &str, words: &[&str]) -> Self {
         let command = home.command(&["replay", recording]);

@@ -154,6 +154,12 @@ impl Clients {
         self.tell_answer(asked.client, &answer(Some(asked.tag), None));
     }
 
+    /// Answers an order to run a program that is in this folder.
+    pub fn debug_begun(&self, asked: OrderId, folder: &str) {
+        let told = object().text("folder", folder).plain("to", asked.tag);
+        self.tell_answer(asked.client, &told.plain("done", true).done());
+    }
+
     /// Answers an order that is not carried out.
     pub fn debug_refused(&self, asked: OrderId, why: &str) {
         self.tell_answer(asked.client, &answer(Some(asked.tag), Some(why)));

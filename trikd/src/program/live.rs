@@ -9,6 +9,7 @@ use crate::clients::debugging::OrderId;
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::{ALL, ToProgram, WhenGone};
+use std::net::SocketAddr;
 use std::path::Path;
 
 impl Supervisor {
@@ -76,6 +77,7 @@ impl Supervisor {
     pub(super) async fn debug(&mut self, asked: OrderId, wish: Wish) {
         match wish {
             Wish::Run(path) => self.run_debugged(asked, &path).await,
+            Wish::Debugpy(address, path) => self.run_python(asked, address, &path).await,
             Wish::Order(order) => self.order(asked, &order),
             Wish::Overtaken => self.refuse(asked, news::OVERTAKEN),
         }
@@ -98,6 +100,24 @@ impl Supervisor {
         }
     }
 
+    /// Runs a Python program that lets itself be debugged by who listens at this address.
+    async fn run_python(&mut self, asked: OrderId, address: SocketAddr, path: &Path) {
+        self.end(Cause::Ordered("another program")).await;
+        let name = self.name_of(path);
+        let file = path.display().to_string();
+        let first = ToProgram::Debugpy {
+            address: &address.to_string(),
+            path: &file,
+        };
+        self.start(Language::Python, name, Some(path.to_owned()), first);
+        let Some(current) = &mut self.current else {
+            return self.refuse(asked, news::NOT_STARTED);
+        };
+        current.is_under_debugpy = true;
+        let folder = path.parent().unwrap_or(path).display().to_string();
+        self.around.clients.debug_begun(asked, &folder);
+    }
+
     /// An order for the debugger of the diagram that runs, which answers by itself.
     fn order(&mut self, asked: OrderId, order: &str) {
         if !self.runs_diagram() {
@@ -115,10 +135,14 @@ impl Supervisor {
         }
     }
 
-    /// The client in control of the debugger is gone.
-    pub(super) fn debugger_left(&mut self) {
+    /// The client in control of the debugger is gone. A program in Python would drive on from where it was stopped, with
+    /// nobody there.
+    pub(super) async fn debugger_left(&mut self) {
+        let is_under_debugpy = |current: &Current| current.is_under_debugpy;
         if self.runs_diagram() {
             self.send(ToProgram::DebugLeft);
+        } else if self.current.as_ref().is_some_and(is_under_debugpy) {
+            self.end(Cause::Ordered("the end of its debugger")).await;
         }
     }
 

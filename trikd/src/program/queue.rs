@@ -9,6 +9,7 @@ use crate::protocol::program::WhenGone;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt::Write;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Instant;
 use tokio::sync::{Notify, oneshot};
@@ -49,9 +50,11 @@ pub enum Command {
 pub enum Wish {
     /// End what runs and run this diagram, stopped before its first block.
     Run(PathBuf),
+    /// End what runs and run this Python program under debugpy, which connects to this address.
+    Debugpy(SocketAddr, PathBuf),
     /// Do this with the debugger of the diagram that runs.
     Order(String),
-    /// It was to run a diagram, and somebody has stopped everything meanwhile.
+    /// It was to run a program, and somebody has stopped everything meanwhile.
     Overtaken,
 }
 
@@ -158,7 +161,7 @@ impl Programs {
 fn outlives_stop(command: &mut Command) -> bool {
     match command {
         Command::Debug(_, wish) => {
-            if matches!(wish, Wish::Run(_)) {
+            if matches!(wish, Wish::Run(_) | Wish::Debugpy(..)) {
                 *wish = Wish::Overtaken;
             }
             true

@@ -29,6 +29,10 @@ pub const OVERTAKEN: &str = "it was stopped before it began";
 pub const NOT_STARTED: &str = "the program cannot be started";
 /// Why a program in a language of text is not debugged.
 pub const ONLY_DIAGRAMS: &str = "only diagrams are debugged";
+/// Why a program in another language is not run under debugpy.
+pub const ONLY_PYTHON: &str = "only programs in Python run under debugpy";
+/// Why a request to run a program under debugpy is none.
+pub const NO_PORT: &str = "a port is wanted, a blank, and the name of a program";
 /// Why a request to debug is none.
 pub const NO_TAG: &str = "a request to debug is a number, a blank and an order";
 /// What all who debug hear when the diagram has ended, however that came.

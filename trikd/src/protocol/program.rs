@@ -44,6 +44,13 @@ pub enum ToProgram<'a> {
     Set(&'a str),
     /// Begin with the diagram in this file, with a debugger attached and stopped before its first block; its absolute path.
     Debugged(&'a str),
+    /// Begin with the Python program in this file under debugpy, which connects to this address.
+    Debugpy {
+        /// Address and port of who debugs it.
+        address: &'a str,
+        /// Its absolute path.
+        path: &'a str,
+    },
     /// An order to the debugger; the program answers each, in their order.
     Debug {
         /// Whose order it is.
@@ -115,7 +122,7 @@ pub enum FromProgram<'a> {
 pub const ALL: u32 = 0;
 
 /// The words of [`ToProgram`], in the order of the document.
-pub const TO_PROGRAM: [&str; 14] = [
+pub const TO_PROGRAM: [&str; 15] = [
     "file",
     "script",
     "start",
@@ -127,6 +134,7 @@ pub const TO_PROGRAM: [&str; 14] = [
     "patch",
     "set",
     "debug-file",
+    "debugpy",
     "debug",
     "debug-left",
     "reply",
@@ -162,6 +170,7 @@ impl<'a> ToProgram<'a> {
             Self::Patch { when_gone, path } => format!("patch:{}:{path}", when_gone.word()),
             Self::Set(text) => format!("set:{text}"),
             Self::Debugged(path) => format!("debug-file:{path}"),
+            Self::Debugpy { address, path } => format!("debugpy:{address} {path}"),
             Self::Debug { client, tag, order } => format!("debug:{client} {tag} {order}"),
             Self::DebugLeft => "debug-left:".to_owned(),
             Self::Reply { number, text } => match text {
@@ -199,6 +208,10 @@ impl<'a> ToProgram<'a> {
             }
             "set" => Self::Set(rest),
             "debug-file" => Self::Debugged(rest),
+            "debugpy" => {
+                let (address, path) = rest.split_once(' ')?;
+                Self::Debugpy { address, path }
+            }
             "debug" => {
                 let (client, rest) = rest.split_once(' ')?;
                 let (tag, order) = rest.split_once(' ')?;
@@ -319,6 +332,7 @@ mod tests {
                 ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
                 ToProgram::Set(text),
                 ToProgram::Debugged(text),
+                ToProgram::Debugpy { address: "[::1]:7", path: text },
                 ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
                 ToProgram::DebugLeft,
                 ToProgram::Reply { number: client, text: is_wanted.then_some(text) },
@@ -361,7 +375,7 @@ mod tests {
             let second = match word {
                 "patch" => "end:x",
                 "debug" => "1 2 x",
-                "reply" => "1 x",
+                "reply" | "debugpy" => "1 x",
                 _ => "1:x",
             };
             let payload = format!("{word}:{second}");
@@ -401,7 +415,8 @@ mod tests {
         let only_others = ["file", "script", "watch", "patch", "set", "reply"];
         let expected: BTreeSet<_> = TO_PROGRAM
             .into_iter()
-            .filter(|word| !only_others.contains(word) && !word.starts_with("debug"))
+            .filter(|word| !only_others.contains(word) && !word.starts_with("debug-"))
+            .filter(|word| *word != "debug")
             .collect();
         assert_eq!(heard, expected);
         let asked = words_behind(module, "_ask('");

@@ -1183,6 +1183,7 @@ class Threads:
             pass
         except BaseException:
             # The program ends with the first thread that fails.
+            _show_failure()
             _tell_failure()
             sys.stdout.flush()
             os._exit(1)
@@ -1425,6 +1426,74 @@ def _tell_failure():
     _channel.send('error', ''.join(traceback.format_exception(kind, error, trace)))
 
 
+_debugger = None
+_resting = {}
+
+
+def _attach(address):
+    """Lets the program be debugged by who listens there; returns when all breakpoints are known."""
+    global _debugger
+    # It would print that modules inside the interpreter are not seen, which no program of a robot has.
+    os.environ.setdefault('PYDEVD_DISABLE_FILE_VALIDATION', '1')
+    try:
+        import debugpy
+    except ImportError:
+        _channel.send('error', 'debugpy is needed to debug Python, and this robot has none: type there: %s -m pip install debugpy\n' % sys.executable)
+        sys.exit(1)
+    host, _, port = address.rpartition(':')
+    debugpy.configure(subProcess=False)
+    try:
+        debugpy.connect((host.strip('[]'), int(port)))
+    except BaseException as error:
+        # A debugger that is not there ends the program inside debugpy.
+        _channel.send('error', 'the debugger at %s cannot be reached: %s\n' % (address, error))
+        sys.exit(1)
+    debugpy.wait_for_client()
+    _debugger = debugpy
+
+
+def _stop_on_entry():
+    """The debugger stops before the first line of the program."""
+    from _pydevd_bundle.pydevd_api import PyDevdAPI
+    PyDevdAPI().stop_on_entry()
+
+
+def _show_failure():
+    """A debugger may stop where nobody has caught an exception, before the program ends because of it."""
+    show = getattr(_debugger, 'trigger_exception_handler', None)
+    if show:
+        show()
+
+
+def _hold():
+    """Motors rest because a debugger has stopped all threads; what it calls when it has."""
+    for group, switch in (('motors', 'value'), ('servos', 'power')):
+        for port in _ports(group):
+            place = '%s/%s/' % (group, port)
+            try:
+                is_on = group == 'motors' or _file(place + 'power').number() == 1
+                told = _file(place + 'value').number()
+                if is_on and (told or group == 'servos'):
+                    _resting[place] = told
+                    _file(place + switch, os.O_WRONLY).write('0\n')
+            except OSError:
+                # One that has failed is at rest.
+                pass
+
+
+def _go_on():
+    """Motors do again what they did, but for those that were told something in between."""
+    while _resting:
+        place, told = _resting.popitem()
+        try:
+            is_servo = place.startswith('servos')
+            is_off = not _file(place + ('power' if is_servo else 'value')).number()
+            if is_off:
+                _file(place + 'value', os.O_WRONLY).write('%d\n' % told)
+        except OSError:
+            pass
+
+
 def _evaluate(code):
     try:
         exec(compile(code, '<direct>', 'exec'), _direct_space)
@@ -1443,22 +1512,36 @@ def _main():
     sys.stdout = _Output()
     first = _channel.receive()
     word, _, rest = (first or ':').partition(':')
-    threading.Thread(target=_listen, daemon=True).start()
+    listener = threading.Thread(target=_listen, daemon=True)
+    # A debugger holds and shows the threads of the program, and this is none.
+    listener.pydev_do_not_trace = listener.is_pydev_daemon_thread = True
+    listener.start()
     _direct_space = _namespace('__main__')
     if word == 'start':
         script.run()
         return
+    address = None
+    if word == 'debugpy':
+        address, _, rest = rest.partition(' ')
     sys.path.insert(0, os.path.dirname(rest))
     sys.argv = [rest]
     _direct_space['__file__'] = rest
     try:
         with open(rest, 'rb') as file:
             text = file.read()
-        exec(compile(text, rest, 'exec'), _direct_space)
+        code = compile(text, rest, 'exec')
+        if address:
+            _attach(address)
+        exec(code, _direct_space)
     except SystemExit:
         raise
     except BaseException:
+        _show_failure()
         _tell_failure()
+        if _debugger:
+            # A debugger would stop once more, at the exit.
+            sys.stdout.flush()
+            os._exit(1)
         sys.exit(1)
     finally:
         sys.stdout.flush()

@@ -25,6 +25,7 @@ fn whole(text: &str) -> Option<&'static str> {
         news::OVERTAKEN => "она была остановлена до начала",
         news::NOT_STARTED => "программу не удалось запустить",
         news::ONLY_DIAGRAMS => "отлаживаются только диаграммы",
+        news::ONLY_PYTHON => "под debugpy выполняются только программы на Python",
         news::NOT_PAIRED => {
             "этот компьютер не сопряжён с роботом: нажмите на роботе Enter и попробуйте ещё раз в течение 30 с"
         }

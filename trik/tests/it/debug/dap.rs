@@ -76,7 +76,7 @@ impl Editor {
     }
 
     /// The next message that is one of these; others are kept.
-    fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub(super) fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         if let Some(at) = self.kept.iter().position(&wanted) {
             return self.kept.remove(at);
         }
@@ -93,14 +93,25 @@ impl Editor {
         self.wait(|message| message["event"] == name)["body"].take()
     }
 
-    fn ask(&mut self, command: &str, arguments: Value) -> Value {
+    /// Asks and does not wait; gives the number of the request.
+    pub(super) fn post(&mut self, command: &str, arguments: Value) -> u64 {
         self.seq += 1;
         let seq = self.seq;
         let body =
             json!({"seq": seq, "type": "request", "command": command, "arguments": arguments});
         let body = body.to_string();
         self.raw(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+        seq
+    }
+
+    /// The whole answer to a request.
+    pub(super) fn answer(&mut self, seq: u64) -> Value {
         self.wait(|message| message["request_seq"] == seq)
+    }
+
+    pub(super) fn ask(&mut self, command: &str, arguments: Value) -> Value {
+        let seq = self.post(command, arguments);
+        self.answer(seq)
     }
 
     pub(super) fn good(&mut self, command: &str, arguments: Value) -> Value {
@@ -140,6 +151,12 @@ impl Editor {
         let arguments = json!({"expression": text, "context": "watch"});
         let answer = self.good("evaluate", arguments);
         answer["result"].as_str().expect("a value").to_owned()
+    }
+
+    /// As when its computer is switched off.
+    pub(super) fn kill(mut self) {
+        self.process.kill().expect("an end");
+        self.process.wait().expect("an end");
     }
 
     pub(super) fn end(mut self) {

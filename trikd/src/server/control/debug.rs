@@ -18,6 +18,8 @@ use std::net::SocketAddr;
 const LEAVE: &str = "leave";
 /// The word, with its blank, of a request to run a diagram that is stopped before its first block.
 const RUN: &str = "run ";
+/// The same of a request to run a Python program under debugpy.
+const PYTHON: &str = "python ";
 
 /// Why a request is not passed on to a program.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -32,13 +34,22 @@ enum Refusal {
     Program(scripts::Refusal),
     /// The program is none of blocks.
     NoDiagram,
+    /// The program is none in Python.
+    NoPython,
+    /// No port, or no name behind it.
+    NoPort,
 }
 
 impl Refusal {
     /// Who can change something about it.
     fn blame(&self) -> Blame {
         match self {
-            Self::NotPaired | Self::Taken(_) | Self::Order(_) | Self::NoDiagram => Blame::Client,
+            Self::NotPaired
+            | Self::Taken(_)
+            | Self::Order(_)
+            | Self::NoDiagram
+            | Self::NoPython
+            | Self::NoPort => Blame::Client,
             Self::Program(why) => why.blame(),
         }
     }
@@ -52,6 +63,8 @@ impl fmt::Display for Refusal {
             Self::Order(why) => write!(out, "{why}"),
             Self::Program(why) => write!(out, "{why}"),
             Self::NoDiagram => out.write_str(news::ONLY_DIAGRAMS),
+            Self::NoPython => out.write_str(news::ONLY_PYTHON),
+            Self::NoPort => out.write_str(news::NO_PORT),
         }
     }
 }
@@ -71,9 +84,10 @@ impl Session {
             client: self.client.id(),
             tag,
         };
-        let done = match text.strip_prefix(RUN) {
-            Some(name) => self.run_debugged(asked, name).await,
-            None => self.order(asked, text).await,
+        let done = match (text.strip_prefix(RUN), text.strip_prefix(PYTHON)) {
+            (Some(name), _) => self.run_debugged(asked, name).await,
+            (None, Some(words)) => self.run_python(asked, words).await,
+            (None, None) => self.order(asked, text).await,
         };
         if let Err(why) = done {
             if why.blame() != Blame::Client {
@@ -91,6 +105,23 @@ impl Session {
             return Err(Refusal::NoDiagram);
         }
         self.command(Command::Debug(asked, Wish::Run(path))).await;
+        Ok(())
+    }
+
+    /// The port of this client that debugpy connects to, and the name of the program.
+    async fn run_python(&self, asked: OrderId, words: &str) -> Result<(), Refusal> {
+        let (port, name) = words.split_once(' ').ok_or(Refusal::NoPort)?;
+        let port = port.parse().map_err(|_| Refusal::NoPort)?;
+        // To the computer that asks, and to no other.
+        let address = SocketAddr::new(self.client.peer.ip(), port);
+        self.takes_debugger()?;
+        let found = scripts::find(&self.control.scripts, name.as_bytes());
+        let path = found.map_err(Refusal::Program)?;
+        if Language::of(&path) != Language::Python {
+            return Err(Refusal::NoPython);
+        }
+        let wish = Wish::Debugpy(address, path);
+        self.command(Command::Debug(asked, wish)).await;
         Ok(())
     }
 

@@ -1,0 +1,451 @@
+//! Programs in Python: the adapter of debugpy here, the program under debugpy on the robot, and the editor between them.
+//!
+//! Owns what is added to their talk: where the program runs, that its motors rest while it is stopped, and that it ends with
+//! the talk. All else passes as it is. `adapter` is the process of debugpy.
+
+mod adapter;
+
+use super::client::{Client, Incoming, Refused, Request};
+use super::greeting::capabilities;
+use crate::debug::target::{Channel, Event, Target};
+use crate::error::Error;
+use crate::language;
+use crate::remote::debugged::Debugged;
+use crate::remote::target::{target as place, the_one};
+use adapter::{Adapter, AdapterSays};
+use lang_text::problem::Locale;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use trikd::protocol::news::{self, End};
+
+/// How long it waits for one of the three who speak before it hears the others.
+const TURN: Duration = Duration::from_millis(2);
+/// Our own requests have numbers from here on; no editor counts so far.
+const OWN: u64 = 1 << 40;
+/// How long the program may take for what it is asked to do before something else.
+const ASIDE: Duration = Duration::from_secs(2);
+/// How long the robot may take to tell of an end that debugpy has noticed.
+const AFTER_END: Duration = Duration::from_secs(2);
+
+/// Whether a request is about a program in Python.
+pub(super) fn is_meant(request: &Request) -> bool {
+    let program = request.text("program").map(Path::new);
+    let ending = program.and_then(Path::extension);
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("py"))
+}
+
+/// Debugs until the talk is over, or false: it could not begin, which is told.
+pub(super) fn serve(request: &Request, hello: &Value, client: &mut Client) -> bool {
+    match begin(request) {
+        Ok((adapter, robot, folder)) => {
+            Session::new(client, adapter, robot, request.clone()).run(hello, &folder)
+        }
+        Err(why) => {
+            client.answer(request, Err(why));
+            false
+        }
+    }
+}
+
+/// What `launch` knows for programs of blocks, and a robot in real time does not.
+const NOT_HERE: [&str; 8] = [
+    "field",
+    "task",
+    "inputs",
+    "gamepad",
+    "seed",
+    "speed",
+    "timeLimit",
+    "stopAtEnd",
+];
+
+/// Whether all that is asked for goes with a program that runs in real time.
+///
+/// # Errors
+/// What does not.
+pub(super) fn is_for_robot(request: &Request, language: &str) -> Result<(), Refused> {
+    let is_there = |name: &&&str| match request.arguments.get(**name) {
+        None | Some(Value::Null | Value::Bool(false)) => false,
+        Some(_) => true,
+    };
+    match NOT_HERE.iter().find(is_there) {
+        None => Ok(()),
+        Some(name) => Err(Refused::new(format!(
+            "\"{name}\" is not for programs in {language}: they run on a robot, such as that of trik up, which has its own world and time"
+        ))),
+    }
+}
+
+fn begin(request: &Request) -> Result<(Adapter, Debugged, String), Refused> {
+    if request.command == "attach" {
+        return Err(Refused::new(
+            "a program in Python that runs already cannot be joined: debugpy has to be in it from its beginning; launch it",
+        ));
+    }
+    is_for_robot(request, "Python")?;
+    let program = PathBuf::from(request.text("program").unwrap_or_default());
+    let robot = match request.text("robot") {
+        Some(robot) => place(robot),
+        None => the_one(),
+    };
+    let why = |error: Error| Refused(error.to_string());
+    let robot = robot.map_err(why)?;
+    let adapter = Adapter::start(request.text("python").unwrap_or("python3"))?;
+    let (debugged, folder) = Debugged::python(&program, &robot, locale(request)).map_err(why)?;
+    Ok((adapter, debugged, folder))
+}
+
+/// The language of who debugs.
+pub(super) fn locale(request: &Request) -> Locale {
+    let named = request.text("language").map(language::locale);
+    named.and_then(Result::ok).unwrap_or_default()
+}
+
+/// What one of our own requests to debugpy is for.
+#[derive(Clone, Debug, PartialEq)]
+enum Asked {
+    /// Its capabilities.
+    Hello,
+    /// The beginning of the talk.
+    Attach,
+    /// Something that has no further meaning.
+    Aside,
+    /// Something that the program does before this is passed on.
+    First(Request, Instant),
+}
+
+/// A program that is debugged.
+struct Session<'a> {
+    client: &'a mut Client,
+    adapter: Adapter,
+    robot: Debugged,
+    launch: Request,
+    /// Our requests that are not answered, by their numbers.
+    asked: Vec<(u64, Asked)>,
+    next: u64,
+    /// The editor knows that the program is there.
+    is_begun: bool,
+    /// The motors rest for a stop.
+    is_held: bool,
+    /// What the program has said went wrong before it could begin.
+    errors: Vec<String>,
+    /// It has ended.
+    is_over: bool,
+    /// When debugpy has lost it.
+    lost: Option<Instant>,
+    /// The editor knows the end.
+    is_told: bool,
+}
+
+impl<'a> Session<'a> {
+    fn new(client: &'a mut Client, adapter: Adapter, robot: Debugged, launch: Request) -> Self {
+        Self {
+            client,
+            adapter,
+            robot,
+            launch,
+            asked: Vec::new(),
+            next: OWN,
+            is_begun: false,
+            is_held: false,
+            errors: Vec::new(),
+            is_over: false,
+            lost: None,
+            is_told: false,
+        }
+    }
+
+    /// Until the talk is over; false if it could not begin.
+    fn run(&mut self, hello: &Value, folder: &str) -> bool {
+        self.ask("initialize", hello.clone(), Asked::Hello);
+        let attach = self.attachment(folder);
+        self.ask("attach", attach, Asked::Attach);
+        let is_good = loop {
+            match self.turn() {
+                Ok(None) => {}
+                Ok(Some(is_good)) => break is_good,
+                Err(error) => {
+                    self.say("important", &format!("trik dap: {error}"));
+                    self.tell_end(1);
+                    break true;
+                }
+            }
+        };
+        self.robot.close();
+        is_good
+    }
+
+    /// What debugpy is told of the program.
+    fn attachment(&self, folder: &str) -> Value {
+        let mut all = match &self.launch.arguments {
+            Value::Object(all) => Value::Object(all.clone()),
+            _ => json!({}),
+        };
+        let program = self.launch.text("program").unwrap_or_default();
+        let program = std::path::absolute(program).unwrap_or_else(|_| program.into());
+        let own = program.parent().unwrap_or(&program).to_string_lossy();
+        for (name, value) in [
+            ("type", json!("debugpy")),
+            ("request", json!("attach")),
+            ("listen", json!({"host": "127.0.0.1", "port": 0})),
+            (
+                "pathMappings",
+                json!([{"localRoot": own, "remoteRoot": folder}]),
+            ),
+            // The module of the robot is no code of the person.
+            ("rules", json!([{"path": "**/trik.py", "include": false}])),
+            // It comes from the robot already.
+            ("redirectOutput", json!(false)),
+            ("subProcess", json!(false)),
+        ] {
+            all[name] = value;
+        }
+        if let Some(all) = all.as_object_mut() {
+            for name in ["program", "python", "robot", "noDebug"] {
+                all.remove(name);
+            }
+        }
+        all
+    }
+
+    fn ask(&mut self, command: &str, arguments: Value, what: Asked) {
+        let seq = self.next;
+        self.next += 1;
+        self.asked.push((seq, what));
+        self.adapter.send(
+            &json!({"seq": seq, "type": "request", "command": command, "arguments": arguments}),
+        );
+    }
+
+    /// Hears each of the three once; whether the talk is over, and was good.
+    fn turn(&mut self) -> Result<Option<bool>, Error> {
+        match self.adapter.next(TURN) {
+            AdapterSays::Message(message) => {
+                if let Some(is_good) = self.hear(message) {
+                    return Ok(Some(is_good));
+                }
+            }
+            AdapterSays::Nothing => {}
+            AdapterSays::End if self.is_told => {}
+            AdapterSays::End => {
+                self.say("important", "trik dap: debugpy has ended");
+                self.robot.end();
+                self.tell_end(1);
+            }
+        }
+        for event in self.robot.turn(Duration::ZERO)? {
+            self.hear_robot(event);
+        }
+        if self.is_over && !self.is_begun {
+            let why = self.errors.join("\n");
+            self.client.answer(&self.launch, Err(Refused(why)));
+            return Ok(Some(false));
+        }
+        self.end_late();
+        match self.client.next(Duration::ZERO) {
+            Incoming::Request(request) => Ok(self.receive(request)),
+            Incoming::Nothing => Ok(None),
+            Incoming::End => Ok(Some(true)),
+        }
+    }
+
+    /// What debugpy says; whether the talk is over.
+    fn hear(&mut self, message: Value) -> Option<bool> {
+        let text = |name: &str| message.get(name).and_then(Value::as_str);
+        let number = message.get("request_seq").and_then(Value::as_u64);
+        if let Some(at) = self.asked.iter().position(|(seq, _)| Some(*seq) == number) {
+            let (_, asked) = self.asked.remove(at);
+            return self.answered(asked, &message);
+        }
+        match text("event") {
+            Some("debugpyWaitingForServer") => {
+                let port = message["body"]["port"].as_u64();
+                if let Some(port) = port.and_then(|port| u16::try_from(port).ok()) {
+                    self.robot.lead_to(port);
+                }
+            }
+            // Of who makes debugpy, and not for an editor.
+            Some("debugpySockets") => {}
+            Some("output") if message["body"]["category"] == "telemetry" => {}
+            Some("initialized") => {
+                self.is_begun = true;
+                self.client.pass(message);
+            }
+            Some("stopped") => {
+                self.client.pass(message);
+                self.hold();
+            }
+            // The robot knows more of the end.
+            Some("exited") => {}
+            Some("terminated") => self.lost = Some(Instant::now()),
+            Some(_) | None => self.client.pass(message),
+        }
+        None
+    }
+
+    fn answered(&mut self, asked: Asked, message: &Value) -> Option<bool> {
+        let is_done = message["success"] == true;
+        match asked {
+            Asked::Hello => {
+                let changed = changed(&message["body"]);
+                self.client
+                    .event("capabilities", json!({ "capabilities": changed }));
+            }
+            Asked::Attach => {
+                let why = message["message"].as_str().unwrap_or("debugpy refuses");
+                let answer = match is_done {
+                    true => Ok(Value::Null),
+                    false => Err(Refused::new(why)),
+                };
+                self.client.answer(&self.launch, answer);
+                return (!is_done).then_some(false);
+            }
+            Asked::Aside => {}
+            Asked::First(request, _) => self.adapter.send(&request.whole()),
+        }
+        None
+    }
+
+    /// Motors rest while all threads are stopped, unless the editor has asked otherwise.
+    fn hold(&mut self) {
+        if self.launch.text("motors") == Some("keep") || self.is_held {
+            return;
+        }
+        self.is_held = true;
+        self.in_program("_hold()", Asked::Aside);
+    }
+
+    /// Has the program do something with its robot.
+    fn in_program(&mut self, what: &str, asked: Asked) {
+        let expression = format!("__import__('trik').{what}");
+        let arguments = json!({"expression": expression, "context": "repl"});
+        self.ask("evaluate", arguments, asked);
+    }
+
+    fn hear_robot(&mut self, event: Event) {
+        match event {
+            Event::Said(Channel::Output, text) => self.say("stdout", &text),
+            Event::Said(Channel::Message, text) => {
+                if self.is_begun {
+                    self.say("stderr", &text);
+                } else {
+                    self.errors.push(text.trim_end().to_owned());
+                }
+            }
+            Event::Over(text) => {
+                self.is_over = true;
+                if self.is_begun {
+                    self.tell_end(u8::from(!ended_well(&self.launch, &text)));
+                } else {
+                    self.errors.push(text);
+                }
+            }
+            Event::Report(_) => {}
+        }
+    }
+
+    /// What waits for too long: the end that debugpy has told and the robot has not, and a program that does not answer.
+    fn end_late(&mut self) {
+        if self.lost.is_some_and(|at| at.elapsed() > AFTER_END) && !self.is_told {
+            self.robot.end();
+            self.tell_end(1);
+        }
+        let mut late = self.asked.iter();
+        let late = late.position(
+            |(_, asked)| matches!(asked, Asked::First(_, since) if since.elapsed() > ASIDE),
+        );
+        if let Some(at) = late
+            && let (_, Asked::First(request, _)) = self.asked.remove(at)
+        {
+            self.adapter.send(&request.whole());
+        }
+    }
+
+    fn tell_end(&mut self, code: u8) {
+        if !std::mem::replace(&mut self.is_told, true) {
+            self.client.event("exited", json!({ "exitCode": code }));
+            self.client.event("terminated", json!({}));
+        }
+    }
+
+    /// What the editor wants; whether the talk is over.
+    fn receive(&mut self, request: Request) -> Option<bool> {
+        match request.command.as_str() {
+            "disconnect" => {
+                // The program and its motors first: debugpy would let it drive on.
+                self.robot.end();
+                self.client.answer(&request, Ok(Value::Null));
+                return Some(true);
+            }
+            "terminate" => {
+                self.robot.end();
+                self.client.answer(&request, Ok(Value::Null));
+                self.tell_end(0);
+            }
+            "restart" => self.refuse(&request, "a program in Python is ended and launched again"),
+            "stepBack" | "reverseContinue" => {
+                self.refuse(&request, "a program in Python cannot be taken back");
+            }
+            "continue" | "next" | "stepIn" | "stepOut" | "goto" if self.is_held => {
+                self.is_held = false;
+                self.in_program("_go_on()", Asked::First(request, Instant::now()));
+            }
+            "setExceptionBreakpoints" => self.adapter.send(&exceptions(&request)),
+            "configurationDone" => {
+                if !self.launch.truth("stopOnEntry") {
+                    self.adapter.send(&request.whole());
+                } else {
+                    self.in_program("_stop_on_entry()", Asked::First(request, Instant::now()));
+                }
+            }
+            _ if self.is_told => self.refuse(&request, "the program has ended"),
+            _ => self.adapter.send(&request.whole()),
+        }
+        None
+    }
+
+    fn refuse(&mut self, request: &Request, why: &str) {
+        self.client.answer(request, Err(Refused::new(why)));
+    }
+
+    fn say(&mut self, category: &str, text: &str) {
+        let text = format!("{}\n", text.trim_end_matches('\n'));
+        let body = json!({"category": category, "output": text});
+        self.client.event("output", body);
+    }
+}
+
+/// What debugpy can, for an editor that was told of programs of blocks.
+fn changed(can: &Value) -> Value {
+    let mut all = can.clone();
+    if let (Some(all), Some(blocks)) = (all.as_object_mut(), capabilities().as_object()) {
+        for (name, value) in blocks {
+            if value.as_bool() == Some(true) {
+                all.entry(name).or_insert(Value::Bool(false));
+            }
+        }
+        all.insert("supportsRestartRequest".to_owned(), Value::Bool(false));
+    }
+    all
+}
+
+/// An editor that knows the filter of programs of blocks alone means errors that nobody catches.
+fn exceptions(request: &Request) -> Value {
+    let mut all = request.whole();
+    if let Some(filters) = all["arguments"]["filters"].as_array_mut() {
+        for filter in filters {
+            if filter == "errors" {
+                *filter = json!("uncaught");
+            }
+        }
+    }
+    all
+}
+
+/// Whether the robot tells that the program has ended well.
+fn ended_well(launch: &Request, text: &str) -> bool {
+    let program = launch.text("program").map(Path::new);
+    let name = program.and_then(Path::file_name).unwrap_or_default();
+    news::ended(text, &name.to_string_lossy()) == Some(End::Well)
+}
