@@ -2,13 +2,14 @@
 //!
 //! Owns how a client comes: over standard input and output, or over TCP, one after the other. `greeting` begins a talk, `session` is one, `client`
 //! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
-//! `debug`; a program in Python is debugged by debugpy, and `python` stands between that and the client.
+//! `debug`; a program in Python is debugged by debugpy, and `python` stands between that and the client; `script` is what JavaScript can.
 
 mod client;
 mod greeting;
 mod launch;
 mod points;
 mod python;
+mod script;
 mod session;
 mod view;
 

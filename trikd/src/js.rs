@@ -1,8 +1,10 @@
 //! JavaScript: QuickJS, one engine for each thread of a program, and the robot as its objects.
 //!
 //! Owns what TRIK programs know: the names, the old dialect's texts of errors, the rule about `main`. The scripts in
-//! `trikd/js` are the objects; `natives` is what they stand on. `session` is the process, `machine` one engine.
+//! `trikd/js` are the objects; `natives` is what they stand on. `session` is the process, `machine` one engine, `debug` what
+//! a debugger can do with them.
 
+pub mod debug;
 pub mod events;
 pub mod failure;
 pub mod files;

@@ -40,6 +40,10 @@ pub const JS_FRAMES: usize = 16;
 pub const JS_ERROR_CHARACTERS: usize = 2000;
 /// Milliseconds that threads have to end when the program is over.
 pub const JS_END_MS: u64 = 100;
+/// Milliseconds that threads may take to stand still for a debugger before that says that the program is stopped.
+pub const JS_STILL_MS: u64 = 500;
+/// How often it looks meanwhile, and brings motors to rest.
+pub const JS_LOOK_MS: u64 = 10;
 /// Bytes of one frame on the telemetry and mailbox ports.
 pub const SMALL_FRAME_BYTES: usize = 64 << 10;
 /// Bytes of one frame between the daemon and a program.

@@ -1,5 +1,5 @@
 // A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP; and programs in
-// Python on a virtual robot, if TRIK_DEBUGPY_PYTHON names the python3 of an environment that has debugpy.
+// Python and JavaScript on a virtual robot, if TRIK_DEBUGPY_PYTHON names the python3 of an environment that has debugpy.
 //
 // usage: node test/debug.js TRIK
 "use strict";
@@ -134,6 +134,33 @@ async function python(client, robot) {
   await client.disconnectRequest();
 }
 
+// What the engine of JavaScript can, and words for what it cannot.
+async function javascript(client, robot) {
+  const file = path.join(robot.folder, "turn.js");
+  fs.writeFileSync(file, "function turn() {\n  script.wait(20);\n}\nfor (let i = 0; i < 1000000; ++i) turn();\n");
+  const { launched } = await begun(client, { program: file, robot: robot.tree, stopOnEntry: true });
+  await launched;
+  const set = await client.setBreakpointsRequest({ source: { path: file }, breakpoints: [{ line: 2 }] });
+  assert.strictEqual(set.body.breakpoints[0].verified, false);
+  let stopped = soon(client, "stopped");
+  await client.configurationDoneRequest();
+  const { threadId, reason } = (await stopped).body;
+  assert.strictEqual(reason, "entry");
+  await assert.rejects(client.nextRequest({ threadId }), /can only be paused/);
+  await assert.rejects(client.evaluateRequest({ expression: "i" }), /can only be paused/);
+  await client.continueRequest({ threadId });
+  stopped = soon(client, "stopped");
+  await client.pauseRequest({ threadId });
+  assert.strictEqual((await stopped).body.reason, "pause");
+  const threads = await client.threadsRequest();
+  assert.deepStrictEqual(threads.body.threads, [{ id: threadId, name: "main" }]);
+  await client.stackTraceRequest({ threadId });
+  const ended = soon(client, "terminated");
+  await client.terminateRequest();
+  await ended;
+  await client.disconnectRequest();
+}
+
 // A virtual robot whose programs run in the environment that has debugpy.
 async function virtual(trik) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "trik-dap-"));
@@ -159,12 +186,12 @@ async function virtual(trik) {
 
 async function texts(trik) {
   if (!process.env.TRIK_DEBUGPY_PYTHON) {
-    console.log("skipped: programs in Python: TRIK_DEBUGPY_PYTHON is not set");
+    console.log("skipped: programs in Python and JavaScript: TRIK_DEBUGPY_PYTHON is not set");
     return;
   }
   const robot = await virtual(trik);
   try {
-    for (const talk of [python]) {
+    for (const talk of [python, javascript]) {
       const client = new DebugClient(trik, "dap", "trik");
       await client.start();
       await talk(client, robot);
@@ -172,7 +199,7 @@ async function texts(trik) {
   } finally {
     await robot.end();
   }
-  console.log("the debugger: programs in Python on a virtual robot");
+  console.log("the debugger: programs in Python and JavaScript on a virtual robot");
 }
 
 async function main() {

@@ -4,7 +4,7 @@
 
 use super::client::{Client, Incoming, Refused};
 use super::launch::Launch;
-use super::python;
+use super::{python, script};
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -27,6 +27,11 @@ pub(super) fn serve(mut client: Client) {
             }
             "launch" | "attach" if python::is_meant(&request) => {
                 if python::serve(&request, &hello, &mut client) {
+                    return;
+                }
+            }
+            "launch" | "attach" if script::is_meant(&request) => {
+                if script::serve(&request, &mut client) {
                     return;
                 }
             }

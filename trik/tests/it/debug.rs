@@ -6,6 +6,8 @@ mod dap;
 mod flow;
 /// Programs in Python under debugpy.
 mod python;
+/// Programs in JavaScript.
+mod script;
 
 use crate::programs::Reachable;
 use crate::rig::TRIK;

@@ -2,6 +2,7 @@
 //!
 //! Owns how an exception becomes the text that a person reads. `wording` has the words of the old dialect.
 
+use super::debug::Frame;
 use super::machine::{OWN, PROGRAM};
 use super::wording;
 use crate::limits;
@@ -10,19 +11,6 @@ use std::fmt::Write;
 
 /// How the engine names a text that is in no file.
 const INPUT: &str = "<input>";
-
-/// One function that was being executed.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Frame {
-    /// Its name; empty for the text of the program itself.
-    pub function: String,
-    /// The file, as it was named when it was evaluated.
-    pub file: String,
-    /// Line and column, from 1.
-    pub line: u32,
-    /// See `line`.
-    pub column: u32,
-}
 
 /// What was thrown.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -92,15 +80,23 @@ fn place<'a>(frame: &Frame, program: &'a str) -> Option<wording::Place<'a>> {
     })
 }
 
-/// Where in the program's text a function of the host was called from: the file, empty for the program itself, and the
-/// line. It calls nothing, so that a program runs the same whether somebody asks or not.
-pub fn call_site(ctx: &Ctx<'_>) -> Option<(String, u32)> {
+/// The calls of the program that have led to a function of the host, the innermost first. It calls nothing, so that a
+/// program runs the same whether somebody asks or not.
+pub fn calls(ctx: &Ctx<'_>) -> Vec<Frame> {
     // Only an error has a backtrace, and that of a text that cannot be parsed has it at once.
     let _ = ctx.json_parse("");
     let thrown = ctx.catch().into_object();
-    let stack = thrown.and_then(Exception::from_object)?.stack()?;
-    let mut frames = stack.lines().filter_map(frame);
-    let innermost = frames.find(|frame| frame.file != INPUT && !frame.file.starts_with(OWN))?;
+    let stack = thrown.and_then(Exception::from_object);
+    let stack = stack.and_then(|thrown| thrown.stack()).unwrap_or_default();
+    let frames = stack.lines().filter_map(frame);
+    let own = |frame: &Frame| frame.file != INPUT && !frame.file.starts_with(OWN);
+    frames.filter(own).take(limits::JS_FRAMES).collect()
+}
+
+/// Where in the program's text a function of the host was called from: the file, empty for the program itself, and the
+/// line.
+pub fn call_site(ctx: &Ctx<'_>) -> Option<(String, u32)> {
+    let innermost = calls(ctx).into_iter().next()?;
     let file = match innermost.file.as_str() {
         PROGRAM => String::new(),
         _ => innermost.file,
@@ -161,6 +157,11 @@ impl Failure {
             exception: format!("Error: {error}"),
             frames: Vec::new(),
         }
+    }
+
+    /// The calls that have led there, the innermost first.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
     }
 
     /// As it is shown for a program: the line, the exception, the backtrace.

@@ -98,8 +98,11 @@ pub fn run_on(
     let runtime = Runtime::new().map_err(broken)?;
     runtime.set_memory_limit(limits::JS_MEMORY_BYTES);
     runtime.set_max_stack_size(limits::JS_STACK_BYTES);
-    let (asked, under) = (slot.clone(), platform.clone());
-    runtime.set_interrupt_handler(Some(Box::new(move || under.stops(&asked))));
+    let (asked, under, program) = (slot.clone(), platform.clone(), shared.clone());
+    runtime.set_interrupt_handler(Some(Box::new(move || {
+        program.pass(&asked);
+        under.stops(&asked)
+    })));
     let own = Rc::new(Own::new(platform, shared.clone(), slot.clone(), &job.text));
     let (lost, text) = (own.clone(), job.text.clone());
     runtime.set_host_promise_rejection_tracker(Some(Box::new(
@@ -117,7 +120,14 @@ pub fn run_on(
         };
         // An end that was asked for looks like a failure from inside.
         match failure.filter(|_| !slot.stops() && !shared.quits()) {
-            Some(failure) => Err(Failure::Program(failure.of_program())),
+            Some(failure) => {
+                let text = failure.of_program();
+                if shared.debugger.failed(slot.who(), &text, failure.frames()) {
+                    shared.bell.ring();
+                    shared.pass(slot);
+                }
+                Err(Failure::Program(text))
+            }
             None => Ok(()),
         }
     })
@@ -131,6 +141,8 @@ fn live<'js>(ctx: &Ctx<'js>, job: &Job, own: &Rc<Own>) -> rquickjs::Result<()> {
     for other in rest {
         script(other)?.call::<_, ()>((kit.clone(),))?;
     }
+    // Before its first line, if that is wanted.
+    own.shared.pass(&own.slot);
     match &job.kind {
         Kind::Program => {
             evaluate(ctx, &job.text, PROGRAM)?;

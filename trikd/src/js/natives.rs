@@ -62,6 +62,11 @@ impl Own {
         {
             self.platform.stand(&self.slot, &file, line);
         }
+        if self.shared.debugger.is_attached() {
+            let calls = failure::calls(ctx);
+            self.shared.debugger.stand(self.slot.who(), calls);
+            self.shared.pass(&self.slot);
+        }
     }
 }
 
@@ -193,7 +198,10 @@ fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value
             return Ok(Value::new_null(ctx.clone()));
         }
         own.stand(ctx);
+        own.shared.debugger.waits(own.slot.who(), true);
         let waited = own.platform.wait(&own.slot, until_ms);
+        own.shared.debugger.waits(own.slot.who(), false);
+        own.shared.pass(&own.slot);
         waited.map_err(|error| failed(ctx, format!("nothing can be waited for: {error}")))?;
         woken = true;
     }

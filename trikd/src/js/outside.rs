@@ -56,6 +56,13 @@ pub trait Output: Send {
     /// # Errors
     /// As [`Output::print`].
     fn web(&self, json: &str) -> io::Result<()>;
+    /// The answer to an order of this client, or a state for all who debug; without a daemon nobody does.
+    ///
+    /// # Errors
+    /// As [`Output::print`].
+    fn debug(&self, _client: u32, _json: &str) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// The daemon, over the channel of the process.
@@ -113,6 +120,10 @@ impl Output for Host {
 
     fn web(&self, json: &str) -> io::Result<()> {
         Host::web(self, json)
+    }
+
+    fn debug(&self, client: u32, json: &str) -> io::Result<()> {
+        Host::debug(self, client, json)
     }
 }
 

@@ -3,14 +3,17 @@
 //! The thread that calls [`run`] has no engine: it brings in what comes from outside and carries questions out, so
 //! that engines may loop as they like.
 
+use super::debug::Orders;
 use super::files::read_text;
 use super::machine::{Job, Kind};
 use super::outside::{Output, Outside};
 use super::shared::{Event, MAIN, Shared};
 use super::source;
+use crate::brick::Brick;
 use crate::engine::{Failure, Outcome, Start};
 use crate::host::Incoming;
 use crate::limits;
+use crate::protocol::program::ALL;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,8 +26,8 @@ use std::time::{Duration, Instant};
 /// The first failure.
 pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Output>) -> Outcome {
     let here = || std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
+    let is_debugged = matches!(start, Start::Debugged(_));
     let (folder, text, kind) = match start {
-        // No debugger is here; the daemon asks for one only with diagrams.
         Start::File(path) | Start::Debugged(path) => {
             let folder = path.parent().map_or_else(here, Path::to_owned);
             (
@@ -39,6 +42,9 @@ pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Out
     let shared = Shared::new(root.to_owned(), folder, output)
         .map_err(|error| Failure::Start(error.into()))?;
     let shared = Arc::new(shared);
+    if is_debugged {
+        shared.debugger.begin();
+    }
     let job = Job {
         name: MAIN.to_owned(),
         text: source::with_call_of_main(text).into(),
@@ -56,18 +62,22 @@ pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Out
 
 /// Until all threads have ended, or the program must.
 fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
+    let mut orders = Orders::new(Brick::new(&shared.root));
     while shared.runs(None) && !shared.quits() {
         while let Some(message) = outside.receive()? {
             match message {
                 Incoming::Direct(text) => shared.deliver(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
                 Incoming::Web => shared.deliver(Some(MAIN), &Event::Web),
-                // A program in a language of text has no blocks, and the daemon patches and debugs diagrams only.
+                Incoming::Debug { client, tag, order } => {
+                    let answer = orders.order(&shared.debugger, tag, &order);
+                    shared.say(|output| output.debug(client, &answer));
+                }
+                Incoming::DebugLeft => orders.left(&shared.debugger),
+                // A program in a language of text has no blocks, and the daemon patches diagrams only.
                 Incoming::Watch(_)
                 | Incoming::Patch(..)
                 | Incoming::Set(_)
-                | Incoming::Debug { .. }
-                | Incoming::DebugLeft
                 | Incoming::Reply(..) => {}
                 Incoming::Gone => return Ok(()),
             }
@@ -77,9 +87,14 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
             let _ = answer.send(shared.quietly(|| outside.mailbox(&words)));
             continue;
         }
+        let (news, soon) = orders.news(&shared.debugger);
+        if let Some(state) = news {
+            shared.say(|output| output.debug(ALL, &state));
+        }
         let mut awaited = vec![PollFd::new(shared.bell.fd(), PollFlags::POLLIN)];
         awaited.extend(outside.fd().map(|fd| PollFd::new(fd, PollFlags::POLLIN)));
-        match poll(&mut awaited, PollTimeout::NONE) {
+        let soon = soon.and_then(|soon| PollTimeout::try_from(soon).ok());
+        match poll(&mut awaited, soon.unwrap_or(PollTimeout::NONE)) {
             Ok(_) | Err(nix::errno::Errno::EINTR) => {}
             Err(error) => return Err(error.into()),
         }

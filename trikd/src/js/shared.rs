@@ -3,6 +3,7 @@
 //! Owns the joints between threads. Each engine has a slot: an inbox, a bell to wait on, and a flag that ends it. Values
 //! of JavaScript never pass from one engine to another; texts do.
 
+use super::debug::{Debugger, Who};
 use super::machine::{self, Job};
 use super::outside::Output;
 use crate::display::Display;
@@ -14,7 +15,7 @@ use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -76,6 +77,8 @@ impl Bell {
 pub struct Slot {
     /// The name of its thread.
     pub name: String,
+    /// Its number; each thread of a program has another one.
+    pub number: u32,
     /// Rung when something has changed that it may wait for.
     pub bell: Bell,
     inbox: Mutex<VecDeque<Event>>,
@@ -83,13 +86,22 @@ pub struct Slot {
 }
 
 impl Slot {
-    fn new(name: &str) -> io::Result<Self> {
+    fn new(name: &str, number: u32) -> io::Result<Self> {
         Ok(Self {
             name: name.to_owned(),
+            number,
             bell: Bell::new()?,
             inbox: Mutex::default(),
             stops: AtomicBool::new(false),
         })
+    }
+
+    /// As a debugger knows it.
+    pub fn who(&self) -> Who<'_> {
+        Who {
+            number: self.number,
+            name: &self.name,
+        }
     }
 
     /// Ends it: a loop at the next turn, a wait at once.
@@ -140,6 +152,9 @@ pub struct Shared {
     pub folder: PathBuf,
     /// Rung when the process has something to do: a question, an end.
     pub bell: Bell,
+    /// Who debugs it.
+    pub debugger: Debugger,
+    started: AtomicU32,
     output: Mutex<Box<dyn Output>>,
     display: Mutex<Display>,
     mail: Mutex<VecDeque<(i32, String)>>,
@@ -161,6 +176,8 @@ impl Shared {
             root,
             folder,
             bell: Bell::new()?,
+            debugger: Debugger::default(),
+            started: AtomicU32::new(0),
             output: Mutex::new(output),
             mail: Mutex::default(),
             questions: Mutex::default(),
@@ -192,7 +209,14 @@ impl Shared {
             }
             slot.bell.ring();
         }
+        self.debugger.wake();
         self.bell.ring();
+    }
+
+    /// A thread stays here while a debugger has stopped the program.
+    pub fn pass(&self, slot: &Slot) {
+        self.debugger
+            .pass(slot.who(), || slot.stops() || self.quits());
     }
 
     /// Whether the program is to end.
@@ -233,7 +257,10 @@ impl Shared {
         if running.len() >= limits::JS_THREADS {
             return Err(NoThread::TooMany);
         }
-        let slot = Arc::new(Slot::new(name).map_err(|error| NoThread::System(error.into()))?);
+        let number = 1 + self.started.fetch_add(1, Ordering::Relaxed);
+        let slot = Slot::new(name, number).map_err(|error| NoThread::System(error.into()))?;
+        let slot = Arc::new(slot);
+        self.debugger.enter(slot.who());
         running.insert(slot.name.clone(), slot.clone());
         Ok(slot)
     }
@@ -242,6 +269,7 @@ impl Shared {
     pub fn finish(&self, slot: &Slot, outcome: Outcome) {
         let mut running = lock(&self.running);
         running.remove(&slot.name);
+        self.debugger.forget(slot.who());
         lock(&self.notes).remove(&slot.name);
         for other in running.values() {
             other.bell.ring();
@@ -268,6 +296,7 @@ impl Shared {
         {
             slot.stop();
         }
+        self.debugger.wake();
     }
 
     /// Tells something to one thread, or to all.

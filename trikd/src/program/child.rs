@@ -53,6 +53,14 @@ impl Language {
         }
     }
 
+    /// Whether programs in it take orders of a debugger.
+    pub fn has_debugger(self) -> bool {
+        match self {
+            Self::Diagram | Self::JavaScript => true,
+            Self::Python | Self::Lua | Self::Native => false,
+        }
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

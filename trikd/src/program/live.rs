@@ -19,6 +19,12 @@ impl Supervisor {
         self.last == Language::Diagram && runs.is_some_and(|current| current.child.runs())
     }
 
+    /// Whether what runs takes orders of a debugger.
+    fn takes_orders(&self) -> bool {
+        let runs = self.current.as_ref();
+        self.last.has_debugger() && runs.is_some_and(|current| current.child.runs())
+    }
+
     /// A new version for the diagram that runs, which answers by itself.
     pub(super) fn patch(&mut self, when_gone: WhenGone, path: &Path) {
         let name = self.name_of(path);
@@ -87,13 +93,13 @@ impl Supervisor {
         self.around.clients.debug_refused(asked, why);
     }
 
-    /// Runs a diagram, stopped before its first block.
+    /// Runs a diagram or a program in JavaScript, stopped at its beginning.
     async fn run_debugged(&mut self, asked: OrderId, path: &Path) {
         self.end(Cause::Ordered("another program")).await;
         let name = self.name_of(path);
         let file = path.display().to_string();
         let first = ToProgram::Debugged(&file);
-        self.start(Language::Diagram, name, Some(path.to_owned()), first);
+        self.start(Language::of(path), name, Some(path.to_owned()), first);
         match self.current {
             Some(_) => self.around.clients.debug_done(asked),
             None => self.refuse(asked, news::NOT_STARTED),
@@ -120,7 +126,7 @@ impl Supervisor {
 
     /// An order for the debugger of the diagram that runs, which answers by itself.
     fn order(&mut self, asked: OrderId, order: &str) {
-        if !self.runs_diagram() {
+        if !self.takes_orders() {
             return self.refuse(asked, news::NO_DIAGRAM);
         }
         let Some(current) = &mut self.current else {
@@ -139,7 +145,7 @@ impl Supervisor {
     /// nobody there.
     pub(super) async fn debugger_left(&mut self) {
         let is_under_debugpy = |current: &Current| current.is_under_debugpy;
-        if self.runs_diagram() {
+        if self.takes_orders() {
             self.send(ToProgram::DebugLeft);
         } else if self.current.as_ref().is_some_and(is_under_debugpy) {
             self.end(Cause::Ordered("the end of its debugger")).await;
@@ -170,7 +176,7 @@ impl Supervisor {
         for asked in current.orders.drain(..) {
             self.refuse(asked, news::HAS_ENDED);
         }
-        if self.last == Language::Diagram {
+        if self.last.has_debugger() {
             self.around.clients.tell_state(news::GONE);
         }
     }

@@ -419,7 +419,12 @@ fn other_programs_have_no_debugger() {
     for order in ["look", "attach", "pause", "detach", "break x"] {
         expect(&mut client, 2, order, "\"why\":\"no diagram runs\"");
     }
-    expect(&mut client, 3, "run a.py", "only diagrams are debugged");
+    expect(
+        &mut client,
+        3,
+        "run a.py",
+        "only diagrams and programs in JavaScript are debugged so",
+    );
     client.send("status");
     let status = client.until("status: ");
     assert!(status.contains("program a.py"), "{status}");

@@ -101,7 +101,7 @@ impl Session {
         self.takes_debugger()?;
         let found = scripts::find(&self.control.scripts, name.as_bytes());
         let path = found.map_err(Refusal::Program)?;
-        if Language::of(&path) != Language::Diagram {
+        if !Language::of(&path).has_debugger() {
             return Err(Refusal::NoDiagram);
         }
         self.command(Command::Debug(asked, Wish::Run(path))).await;
