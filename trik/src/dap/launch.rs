@@ -223,7 +223,6 @@ impl Launch {
             let (answer, next) = match self.restart(client, target, &mut sheets) {
                 Restart::Anew => return Next::Again(request),
                 Restart::Changed => (Ok(Value::Null), Begins::Changed),
-                Restart::Same => (Ok(Value::Null), Begins::Same),
                 Restart::Refused(why) => (Err(Refused(why)), Begins::Same),
             };
             client.answer(&request, answer);
@@ -239,12 +238,9 @@ impl Launch {
         sheets: &mut Sheets,
     ) -> Restart {
         let now = save::bytes(&self.program).ok();
-        if now == sheets.seen {
-            // An editor that has joined a program does not begin it.
-            return match self.is_joining {
-                true => Restart::Same,
-                false => Restart::Anew,
-            };
+        // What an editor has joined may be another version than the file, and is not for it to begin.
+        if now == sheets.seen && !self.is_joining {
+            return Restart::Anew;
         }
         let opened = match self.opened() {
             Ok(opened) => opened,
@@ -287,8 +283,6 @@ impl Launch {
 enum Restart {
     /// Another version runs.
     Changed,
-    /// The same one runs on.
-    Same,
     /// Nothing has changed, and why.
     Refused(String),
     /// The program has to begin anew.

@@ -6,6 +6,8 @@ mod dap;
 mod flow;
 /// Programs in Python under debugpy.
 mod python;
+/// Another version of what runs on a robot, from an editor.
+mod restart;
 /// Programs in JavaScript.
 mod script;
 
