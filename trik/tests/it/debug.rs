@@ -1,5 +1,7 @@
 //! `trik debug` and `trik dap` as people and editors use them.
 
+/// A coefficient that changes while the robot drives.
+mod coefficient;
 /// Frames that an editor sends, and some that none does.
 mod dap;
 /// Data-flow programs in a simulated world.

@@ -64,6 +64,12 @@ impl Reachable {
         Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
     }
 
+    /// The same, and each save of it changes what runs.
+    pub fn watch_file(&self, file: &str) -> Running {
+        let words = ["run", file, "--watch", "--robot", &self.ip];
+        Running::new(&mut self.robot.home.command(&words))
+    }
+
     /// Writes a program and starts it.
     pub fn spawn(&self, name: &str, text: impl AsRef<[u8]>) -> Running {
         let file = self.robot.home.0.file(name, text);
