@@ -36,16 +36,19 @@ pub enum Story {
     Mail,
     /// Where a diagram is, with its variables: JSON.
     Diagram,
+    /// Where the robots and the things of a virtual world are: JSON.
+    World,
 }
 
 impl Story {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Log,
         Self::Programs,
         Self::Output,
         Self::Mail,
         Self::Diagram,
+        Self::World,
     ];
 
     /// Its topic.
@@ -56,6 +59,7 @@ impl Story {
             Self::Output => "/output",
             Self::Mail => "/mail",
             Self::Diagram => "/diagram",
+            Self::World => "/world",
         }
     }
 

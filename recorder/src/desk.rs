@@ -65,6 +65,8 @@ pub struct Settings {
     pub library: String,
     /// The black box; None without one.
     pub kept: Option<kept::Settings>,
+    /// The folder in which the world around a virtual robot is told.
+    pub world: Option<PathBuf>,
 }
 
 impl Desk {
@@ -86,6 +88,7 @@ impl Desk {
         let is_heard = Arc::new(AtomicBool::new(keeps));
         let mut work = Work {
             root: settings.root,
+            world: settings.world,
             library: settings.library,
             watch: None,
             numbers: 0,
@@ -165,6 +168,7 @@ impl Desk {
 
 struct Work {
     root: PathBuf,
+    world: Option<PathBuf>,
     library: String,
     /// None while nobody wants anything, or there is no tree.
     watch: Option<Watch>,
@@ -286,6 +290,7 @@ impl Work {
         }
         let wants = self.wants();
         if let Ok(watch) = Watch::begin_after(self.numbers, &self.root, &self.library, wants) {
+            let watch = watch.with_world(self.world.as_deref());
             self.batch.extend(watch.beginning());
             self.watch = Some(watch);
         }

@@ -5,6 +5,7 @@
 //!
 //! - `entry`: something for a recording
 //! - `nodes`, `watch`: what a tree has, and what happens in it
+//! - `world`: what a virtual robot tells of the world around it
 //! - `pen`: entries as messages of one recording
 //! - `standard`: nodes as messages that other people's tools know
 //! - `file`: the thread that writes them to a disk
@@ -29,3 +30,4 @@ mod pen;
 mod standard;
 pub mod stream;
 pub mod watch;
+pub mod world;

@@ -56,3 +56,11 @@ pub const STANDARD_OLD_NS: u64 = 1_000_000_000;
 pub const IMU_APART_NS: u64 = 100_000_000;
 /// Distances that are a scan; fewer are so many sensors.
 pub const SCAN_NUMBERS_MIN: usize = 8;
+/// How often it is looked whether the world around a virtual robot has told something.
+pub const WORLD_MS: u64 = 50;
+/// Bytes of what stands still in it, which goes with a recording as a file.
+pub const WORLD_SCENE_BYTES_MAX: u64 = 256 << 10;
+/// Bytes of what moves in it, which is one line.
+pub const WORLD_PLACES_BYTES_MAX: u64 = 8 << 10;
+/// Bytes of such lines in a second.
+pub const WORLD_BYTES_PER_S: u64 = 20 << 10;

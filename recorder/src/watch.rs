@@ -5,6 +5,7 @@
 
 use crate::entry::{Entry, Known};
 use crate::error::Error;
+use crate::world::World;
 use crate::{limits, nodes};
 use journal::layout::Layout;
 use journal::node::Node;
@@ -153,6 +154,8 @@ pub struct Watch {
     /// Length and time of the configuration, and its text.
     configuration: (u64, (i64, i64)),
     text: Option<Entry>,
+    /// Around a virtual robot.
+    world: Option<World>,
     /// It gives what was recorded.
     is_replayed: bool,
     offset_ns: i64,
@@ -203,6 +206,7 @@ impl Watch {
             line: Vec::new(),
             configuration: NONE,
             text: None,
+            world: None,
             is_replayed: is_replayed(root),
             offset_ns: offset_ns(),
             begin_ns: u64::try_from(clock_ns(ClockId::CLOCK_MONOTONIC)).unwrap_or(0),
@@ -218,6 +222,15 @@ impl Watch {
             return Err(Error::Nothing(root.to_owned()));
         }
         Ok(watch)
+    }
+
+    /// The same with the world that is told in this folder.
+    #[must_use]
+    pub fn with_world(self, folder: Option<&Path>) -> Self {
+        Self {
+            world: folder.map(World::new),
+            ..self
+        }
     }
 
     /// The greatest number of a node.
@@ -265,6 +278,9 @@ impl Watch {
             self.missed += watched.look(&from, &mut self.tuple, out);
         }
         self.read_log(out);
+        if let Some(world) = &mut self.world {
+            world.look(Instant::now(), out);
+        }
     }
 
     /// What a recording that begins now must have first: facts, configuration, all nodes, and what each had last.
@@ -274,13 +290,17 @@ impl Watch {
         let nodes = nodes.map(|watched| Entry::Node(watched.known.clone()));
         let newest = self.watched.iter().filter_map(|one| one.newest.clone());
         let first = [facts].into_iter().chain(self.text.clone());
-        first.chain(nodes).chain(newest).collect()
+        let world = self.world.iter().flat_map(World::beginning);
+        first.chain(nodes).chain(newest).chain(world).collect()
     }
 
     /// The next look tells once more what is told only when it changes: it was lost.
     pub fn tell_again(&mut self) {
         self.configuration = NONE;
         self.is_told = false;
+        if let Some(world) = &mut self.world {
+            world.tell_again();
+        }
     }
 
     /// Other nodes are wanted from now on; new ones come at once.

@@ -10,6 +10,7 @@ use crate::place;
 use crate::refusal::Refusal;
 use crate::remote::recorded;
 use crate::up::session::signals;
+use crate::up::telling;
 use args::{RecordArgs, Recorded};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use recorder::entry::{Batch, Entry, events};
@@ -49,6 +50,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let wanted = args.clone();
     let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));
     let watch = Watch::begin(&root, LIBRARY, wants).map_err(refused)?;
+    let watch = watch.with_world(world(&root).as_deref());
     let create = match args.no_standard {
         false => Disk::create_with_standard,
         true => Disk::create,
@@ -96,6 +98,14 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let line = counted(counts, begin.elapsed(), size);
     say(&format!("{}: {why}; {line}\n", args.output.display()))?;
     Ok(0)
+}
+
+/// Where the world around the virtual robot of this tree is told; None if it is none of this user.
+fn world(root: &Path) -> Option<PathBuf> {
+    let all = place::running(&place::base().ok()?).ok()?;
+    let is_it = |robot: &place::Running| robot.mountpoint.canonicalize().is_ok_and(|at| at == root);
+    let robot = all.into_iter().find(is_it)?;
+    Some(telling::folder(&robot.board))
 }
 
 /// What has come, and what has not.

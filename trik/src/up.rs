@@ -1,8 +1,8 @@
 //! `trik up`: a virtual board in this process, the tree over it in child processes, and the person in front of them.
 //!
 //! Owns the order of place and board, and what the board is for a `session`, which is the run over it. `tree` is the child,
-//! `companion` others beside it, of which there are `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `around` is the world for the page, `model` makes
-//! a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
+//! `companion` others beside it, of which there are `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `around` is the world for the
+//! page and `telling` for recordings, `model` makes a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
 pub(crate) mod args;
 mod around;
@@ -13,6 +13,7 @@ mod model;
 pub(crate) mod page;
 mod screen;
 pub(crate) mod session;
+pub(crate) mod telling;
 pub(crate) mod tree;
 pub(crate) mod trikd;
 mod view;
@@ -33,6 +34,7 @@ use sim::field::{Field, Locks};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use telling::Telling;
 use trikd::Trikd;
 
 /// Runs a virtual robot until somebody stops it.
@@ -80,10 +82,7 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         (None, Some(text)) => write(&text, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
-    let board = Board::start(&place.board, platform.body, options).map_err(|error| {
-        let what = format!("the virtual board in {}", place.board.display());
-        Error::system(what, error)
-    })?;
+    let board = board(platform.body, options, &place)?;
     let arguments = arguments(&args, &config, &place);
     let virtual_robot = VirtualRobot {
         robot: if world.is_some() {
@@ -97,7 +96,7 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         board: &board,
     };
     let name = virtual_robot.robot.to_owned();
-    let beneath = seen(&board, &place);
+    let (beneath, telling) = seen(&board, &place)?;
     let page = Served::start(&args.serving, &place, trikd.as_ref(), name, beneath)?;
     let over = Over {
         ev3dev,
@@ -108,21 +107,38 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
     let mut session = Session::start(&arguments, &virtual_robot, &place, signals, over)?;
     let end = session.run();
     drop(session);
+    drop(telling);
     // Actuators have come to rest, so the board is not needed any more; then its place is free.
     drop(board);
     drop(place);
     end
 }
 
-/// What the page shows of a board: the world around it, if it has one.
-fn seen(board: &Board, place: &Place) -> page::Beneath {
-    let around = board
-        .watcher()
-        .map(|watcher| -> Arc<dyn World> { Arc::new(Around::new(watcher, place.board.clone())) });
-    page::Beneath {
-        world: around,
+fn board(body: Box<dyn Body>, options: Options, place: &Place) -> Result<Board, Error> {
+    Board::start(&place.board, body, options).map_err(|error| {
+        let what = format!("the virtual board in {}", place.board.display());
+        Error::system(what, error)
+    })
+}
+
+/// What the page shows of a board: the world around it, if it has one, which is told to those who record it too.
+fn seen(board: &Board, place: &Place) -> Result<(page::Beneath, Option<Telling>), Error> {
+    let around =
+        |watcher| -> Arc<dyn World> { Arc::new(Around::new(watcher, place.board.clone())) };
+    let world = board.watcher().map(around);
+    let folder = telling::folder(&place.board);
+    let telling = (world
+        .clone()
+        .map(|world| Telling::start(world, folder.clone())))
+    .transpose();
+    let beneath = page::Beneath {
+        world,
         ..page::Beneath::default()
-    }
+    };
+    Ok((
+        beneath,
+        telling.map_err(|error| Error::file(&folder, error))?,
+    ))
 }
 
 /// A virtual board as what is beneath a tree.

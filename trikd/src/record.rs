@@ -48,6 +48,7 @@ impl Record {
                 root: settings.tree.clone(),
                 library: LIBRARY.to_owned(),
                 kept,
+                world: settings.world.clone(),
             },
             |saved| tell(&saved),
         );

@@ -144,6 +144,9 @@ pub struct Settings {
         default_value = "/run/gamepad-service.out.fifo"
     )]
     pub gamepad_fifo: PathBuf,
+    /// Folder in which the world around a virtual robot is told, for recordings; `trik up` names it.
+    #[arg(long, value_name = "DIR")]
+    pub world: Option<PathBuf>,
     /// Name of the robot in the network [default: the name of the host].
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
@@ -217,7 +220,10 @@ impl Settings {
             &mut self.run,
             &mut self.gamepad_fifo,
         ];
-        for path in paths.into_iter().chain(&mut self.box_dir) {
+        for path in (paths.into_iter())
+            .chain(&mut self.box_dir)
+            .chain(&mut self.world)
+        {
             *path = std::path::absolute(&*path).map_err(|error| Error::file(path, error))?;
         }
         Ok(())

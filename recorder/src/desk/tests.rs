@@ -106,6 +106,7 @@ fn desk(tree: &Tree) -> Desk {
         root: tree.root.path().to_owned(),
         library: "test".to_owned(),
         kept: None,
+        world: None,
     };
     Desk::start(settings, |told| panic!("nothing is kept, but {told:?}")).unwrap()
 }

@@ -6,6 +6,7 @@
 
 use super::args::{ServingArgs, absolute};
 use super::companion::Companion;
+use super::telling;
 use crate::error::Error;
 use crate::limits;
 use crate::place::Place;
@@ -57,6 +58,7 @@ impl Trikd {
         option("--run", &place.trikd.join("run"));
         let fifo = place.board.join("run/gamepad-service.out.fifo");
         option("--gamepad-fifo", &fifo);
+        option("--world", &telling::folder(&place.board));
         list.extend(addresses.iter().map(|ip| format!("--address={ip}").into()));
         // Who comes and goes is no news for the person in front of the robot, unless it is asked for.
         if std::env::var_os("TRIKD_LOG").is_none() {

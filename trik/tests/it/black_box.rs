@@ -90,6 +90,13 @@ fn the_last_minutes_are_fetched_with_what_programs_did() {
     );
     assert!(has(Story::Output, "print: on the way"), "{lines:?}");
     assert!(has(Story::Programs, "drive.js has ended"), "{lines:?}");
+    assert!(has(Story::World, "\"robots\":[{\"at\":["), "{lines:?}");
+    let reader = Reader::open(File::open(&file).expect("a file")).expect("a recording");
+    let attached = reader.attachments();
+    assert!(
+        attached.iter().any(|(name, _)| name == "world.json"),
+        "{attached:?}"
+    );
     // The robot has it too, and what is there is not written over.
     assert_eq!(content(&saved(&folder, "asked")).1, lines);
     let output = home.run(&["box", "save", "-o", name, "--robot", robot.ip()]);
