@@ -89,6 +89,24 @@ try {
   await page.keyboard.press('Control+S');
   await page.getByText('Refused').waitFor();
   await shot('configuration');
+  // Over a replay the place is that of the wheels, as on a real robot.
+  const file = join(robot.home, 'run.mcap');
+  const { begun, recorded } = robot.record(file, 8);
+  await begun;
+  robot.write('motors/M3/value', 45);
+  robot.write('motors/M4/value', 60);
+  await recorded;
+  const player = await Robot.replay(file);
+  try {
+    await page.goto(`${player.url}#world`);
+    await page.locator('.stage canvas').waitFor();
+    await page.getByRole('button', { name: 'Play', exact: true }).click();
+    // The picture has the way of six seconds.
+    await page.waitForTimeout(6000);
+    await shot('ground');
+  } finally {
+    await player.end();
+  }
 } finally {
   await eyes.end();
   await robot.end();

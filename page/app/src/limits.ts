@@ -74,3 +74,14 @@ export const DRAWN_MAX = 1500;
 export const PINNED_MAX = 60;
 /** Letters of a path or a name in the store of the browser. */
 export const STORED_NAME_LENGTH_MAX = 1024;
+
+/** Bytes of what stands still in a recorded world; the recorder has the same limit. */
+export const SCENE_BYTES_MAX = 256 << 10;
+/** Worlds of one recording that are kept: each that a person has loaded is one. */
+export const SCENES_MAX = 100;
+/** Items of a recorded world, and points of each. */
+export const SCENE_ITEMS_MAX = 20_000;
+/** Things that move in it, and rays of a lidar. */
+export const THINGS_MAX = 1000;
+/** Robots of it, and wheels and sensors of each. */
+export const SHAPE_PARTS_MAX = 100;

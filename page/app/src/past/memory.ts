@@ -2,7 +2,14 @@
 //
 // Owns which topics count, and how much is kept. Knows no files and no moment that is shown.
 
-import { CHANNELS_MAX, NUMBERS_MAX, SCHEMA_BYTES_MAX, TEXT_BYTES_MAX, TEXT_COST } from '../limits';
+import {
+  CHANNELS_MAX,
+  NUMBERS_MAX,
+  SCENES_MAX,
+  SCHEMA_BYTES_MAX,
+  TEXT_BYTES_MAX,
+  TEXT_COST,
+} from '../limits';
 import { isLines, type Line, nodeOf } from '../robot/recording';
 import { Message, type Part, partsOf } from './cdr';
 import type { Sink } from './records';
@@ -11,6 +18,10 @@ import { Wrong } from './wrong';
 
 const FAULTS = '/faults';
 const DIAGRAM = '/diagram';
+/** Where things are; it is no line for a person. */
+const WORLD = '/world';
+/** What stands still, as a file beside the recording. */
+const SCENE = 'world.json';
 
 export class Memory implements Sink {
   /** By their paths. */
@@ -19,6 +30,10 @@ export class Memory implements Sink {
   readonly lines: Line[] = [];
   /** Where diagrams were. */
   readonly steps: Line[] = [];
+  /** Where the robots and the things of a virtual world were. */
+  readonly places: Line[] = [];
+  /** What stood still in it. */
+  readonly scenes: { time: number; text: string }[] = [];
   /** Messages that are not as their type says. */
   strange = 0;
   readonly #room = { numbers: NUMBERS_MAX, textBytes: TEXT_BYTES_MAX };
@@ -57,7 +72,7 @@ export class Memory implements Sink {
       this.#spend([topic, ...words.values()].join('').length);
       this.tracks.set(node.path, track);
       this.#channels.set(id, track);
-    } else if (!node && isLines(topic)) {
+    } else if (!node && (isLines(topic) || topic === WORLD)) {
       this.#channels.set(id, topic);
     }
   }
@@ -75,9 +90,18 @@ export class Memory implements Sink {
     this.#spend(0);
   }
 
+  attachment(name: string, time: number, data: Uint8Array): void {
+    if (name !== SCENE || this.scenes.length >= SCENES_MAX) return;
+    const text = new TextDecoder().decode(data);
+    this.scenes.push({ time, text });
+    this.#spend(text.length + TEXT_COST);
+  }
+
   /** Lines come in their order, apart from some that waited for each other. */
   sort(): void {
-    for (const lines of [this.lines, this.steps]) lines.sort((one, other) => one.time - other.time);
+    this.scenes.sort((one, other) => one.time - other.time);
+    for (const lines of [this.lines, this.steps, this.places])
+      lines.sort((one, other) => one.time - other.time);
   }
 
   #count(time: number): void {
@@ -105,7 +129,8 @@ export class Memory implements Sink {
       this.tracks.get(name.replace(/^\//, ''))?.fault(time, text);
       this.#count(time);
     } else {
-      (topic === DIAGRAM ? this.steps : this.lines).push({ topic, time, level, name, text, errno });
+      const lines = topic === DIAGRAM ? this.steps : topic === WORLD ? this.places : this.lines;
+      lines.push({ topic, time, level, name, text, errno });
       this.#spend(name.length + text.length + TEXT_COST);
     }
   }

@@ -7,6 +7,8 @@ import type { OutputLine } from '../robot/program.svelte';
 import type { Fields, Line, Node } from '../robot/recording';
 import type { Known } from '../robot/robot.svelte';
 import type { DebuggerState } from '../robot/told';
+import type { Around } from '../world/around';
+import { aroundOf } from './around.svelte';
 import type { Beside } from './beside.svelte';
 import type { Memory } from './memory';
 import { countUntil, runningAt, Steps } from './steps';
@@ -48,6 +50,8 @@ export class Past {
   told = $state.raw<DebuggerState | undefined>(undefined);
   /** Blocks of data flow at which something had happened lately. */
   lit = $state.raw<ReadonlySet<string>>(new Set());
+  /** The world; undefined if the recording has nothing of it. */
+  readonly around: Around | undefined;
   #lineCount = 0;
   #stepCount = 0;
   readonly #steps: Steps;
@@ -65,6 +69,7 @@ export class Past {
     this.#steps = new Steps(memory.steps);
     const now = () => this.#now;
     this.nodes = nodesAt(memory, now);
+    this.around = aroundOf(memory, this.nodes, now);
   }
 
   /** The moment that is shown, in seconds since 1970. */

@@ -3,7 +3,7 @@
 // Owns their frames, chunks and checksums, and where something is wrong. What messages mean is known to who takes them. The
 // live form is read elsewhere, because it comes in pieces and has no chunks.
 
-import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX } from '../limits';
+import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX, SCENE_BYTES_MAX } from '../limits';
 import { unpacked } from './lz4';
 import { sumOf } from './sum';
 import { type RecordingFault, Wrong } from './wrong';
@@ -13,6 +13,8 @@ export interface Sink {
   schema(id: number, text: Uint8Array): void;
   channel(id: number, schema: number, topic: string, words: ReadonlyMap<string, string>): void;
   message(channel: number, time: number, data: Uint8Array): void;
+  /** Something that goes with the recording. */
+  attachment(name: string, time: number, data: Uint8Array): void;
 }
 
 const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
@@ -23,6 +25,8 @@ const MESSAGE = 0x05;
 const CHUNK = 0x06;
 const ATTACHMENT = 0x09;
 const DATA_END = 0x0f;
+/** Times, names and the checksum of an attachment. */
+const ATTACHED_WORDS_BYTES = 1024;
 /** A kind and a length. */
 const HEAD_BYTES = 9;
 
@@ -145,7 +149,20 @@ export class Walk {
     }
     this.#sum = sumOf(whole, this.#sum);
     if (kind === CHUNK) this.#chunk(content, begin);
+    else if (kind === ATTACHMENT) this.#attachment(content);
     else this.#message(kind, content);
+  }
+
+  #attachment(content: Reader): void {
+    // What is longer is nothing that the page knows.
+    if (content.left > SCENE_BYTES_MAX + ATTACHED_WORDS_BYTES) return;
+    const time = content.u64() / 1e9;
+    // When it was made.
+    content.take(8);
+    const name = content.text();
+    // Its type.
+    content.text();
+    this.sink.attachment(name, time, content.take(content.u64()));
   }
 
   #chunk(content: Reader, begin: number): void {

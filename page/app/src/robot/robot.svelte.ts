@@ -5,6 +5,10 @@
 
 import { Link } from '../link/link';
 import type { News, Playback } from '../link/words';
+import type { Around } from '../world/around';
+import { Ground } from '../world/ground.svelte';
+import { poseOf } from '../world/mount';
+import { ToldWorld } from '../world/told.svelte';
 import type { Scene, WorldState } from '../world/types';
 import { Clock } from './clock';
 import { Configuration } from './configuration.svelte';
@@ -64,9 +68,10 @@ export class Robot {
   past = $state.raw<Past | undefined>(undefined);
   /** Where the recording is that is played; undefined over a robot. */
   playback = $state.raw<Playback | undefined>(undefined);
-  scene = $state.raw<Scene | undefined>(undefined);
-  /** What moves in the world; drawn at each picture, so not a state of components. */
-  world: WorldState | undefined;
+  readonly #told = new ToldWorld();
+  readonly #ground: Ground;
+  /** A node says where the robot is. */
+  #saysWhere = $state(false);
 
   readonly #nodes = new Map<string, Live>();
   #paths = $state.raw<string[]>([]);
@@ -92,6 +97,10 @@ export class Robot {
     this.debugger = new Debugger(this.link);
     this.configuration = new Configuration(this.link);
     this.#wanted = new Wanted(address, this);
+    this.#ground = new Ground(
+      () => this.#nodes,
+      () => this.clock,
+    );
     const show = () => {
       if (this.#isDirty) {
         this.#isDirty = false;
@@ -125,6 +134,28 @@ export class Robot {
   /** Lines of the log, of programs and their output; the newest last. */
   get lines(): Line[] {
     return this.past?.lines ?? this.#lines;
+  }
+
+  /** The world as the simulator tells it, at the moment of a recording, or what a real robot says of where it is. */
+  get around(): Around | undefined {
+    if (this.past) return this.past.around;
+    if (this.hasWorld) return this.#told;
+    return this.#saysWhere ? this.#ground : undefined;
+  }
+
+  /** What stands still in the world. */
+  get scene(): Scene | undefined {
+    return this.around?.scene;
+  }
+
+  /** What moves in it; drawn at each picture, so not a state of components. */
+  get world(): WorldState | undefined {
+    return this.around?.state;
+  }
+
+  /** The world takes orders. */
+  get mayOrderWorld(): boolean {
+    return this.hasWorld && !this.past;
   }
 
   /** The nodes of the robot as it is now, whatever is shown. */
@@ -224,10 +255,10 @@ export class Robot {
         this.configuration.configured(news.why);
         break;
       case 'scene':
-        this.scene = news.scene;
+        this.#told.scene = news.scene;
         break;
       case 'world':
-        this.world = news.state;
+        this.#told.state = news.state;
         this.#isDirty = true;
         break;
       case 'playback':
@@ -274,6 +305,7 @@ export class Robot {
       histories: new Map(),
     });
     this.#paths = [...this.#nodes.keys()].sort();
+    this.#saysWhere ||= poseOf(node) !== undefined;
   }
 
   sample(path: string, time: number, fields: Fields): void {

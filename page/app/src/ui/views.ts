@@ -6,6 +6,7 @@ import Diagram from '../diagram/Diagram.svelte';
 import Instruments from '../instruments/Instruments.svelte';
 import Log from '../log/Log.svelte';
 import Program from '../program/Program.svelte';
+import type { Past } from '../past/past.svelte';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
 import World from '../world/World.svelte';
@@ -18,20 +19,28 @@ export interface View {
   /** Whether this robot has anything to show in it. */
   isThere(robot: Robot): boolean;
   /** It can show a moment of a recording, and then nothing in it reaches the robot. */
-  hasPast?: boolean;
+  hasPast?: (past: Past) => boolean;
 }
 
+const always = () => true;
+
 export const views: View[] = [
-  { name: 'world', title: words.world, component: World, isThere: (robot) => robot.hasWorld },
+  {
+    name: 'world',
+    title: words.world,
+    component: World,
+    isThere: (robot) => robot.hasWorld || robot.around !== undefined,
+    hasPast: ({ around }) => around !== undefined,
+  },
   {
     name: 'instruments',
     title: words.instruments,
     component: Instruments,
     isThere: () => true,
-    hasPast: true,
+    hasPast: always,
   },
-  { name: 'program', title: words.program, component: Program, isThere: () => true, hasPast: true },
-  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true, hasPast: true },
+  { name: 'program', title: words.program, component: Program, isThere: () => true, hasPast: always },
+  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true, hasPast: always },
   { name: 'configuration', title: words.configuration, component: Configuration, isThere: () => true },
-  { name: 'log', title: words.log, component: Log, isThere: () => true, hasPast: true },
+  { name: 'log', title: words.log, component: Log, isThere: () => true, hasPast: always },
 ];

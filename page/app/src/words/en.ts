@@ -269,6 +269,9 @@ export const en = {
   worldDistance: (port: string, cm: number | null) =>
     cm === null ? `${port} sees nothing.` : `${port} sees something at ${cm} cm.`,
   worldPaused: 'Time stands still.',
+  worldGround:
+    'It is drawn where the robot says that it is; a square of the grid is half a metre. Sensors look where their names say, else ahead.',
+  worldLookKeys: 'Keys on the picture: arrows, + and - and 0 move it.',
   worldKeys:
     'Keys on the picture: arrows, + and - and 0 move it; Shift with arrows carries the robot, comma and point turn it, brackets choose what is carried.',
   faults: 'Faults',

@@ -60,6 +60,7 @@ export class Keys {
   }
 
   #move(right: number, up: number, degrees: number): void {
+    if (!this.robot.mayOrderWorld) return;
     const { picked } = this.view;
     const world = this.robot.world;
     const now = performance.now();

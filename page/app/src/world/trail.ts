@@ -28,10 +28,14 @@ export class Trail {
   put(state: WorldState): void {
     state.robots.forEach((robot, number) => {
       const [x, y] = robot.at;
-      const way = (this.ways[number] ??= { points: [], colour: '' });
-      extend(way, x, y);
+      this.step(number, x, y);
       this.#mark(number, robot.marker, x, y);
     });
+  }
+
+  /** A robot is there now. */
+  step(number: number, x: number, y: number): void {
+    extend((this.ways[number] ??= { points: [], colour: '' }), x, y);
   }
 
   /** Forgets the ways of robots; what markers have left is of the world. */

@@ -14,7 +14,8 @@ const RATIO_MAX = 2;
 
 export class View {
   readonly camera = new Camera();
-  readonly trail = new Trail();
+  /** Of a world that does not know the ways itself. */
+  readonly #ways = new Trail();
   hasTrail = true;
   /** What keys move: 0 is the robot, then things from 1; shown while the picture has the focus. */
   picked = 0;
@@ -67,19 +68,25 @@ export class View {
     return Math.min(RATIO_MAX, window.devicePixelRatio || 1);
   }
 
+  /** The ways of robots, and what markers have left. */
+  get trail(): Trail {
+    return this.robot.around?.trail ?? this.#ways;
+  }
+
   #look(): void {
+    this.robot.around?.look();
     const { scene, world } = this.robot;
     if (!scene || !world || this.camera.width <= 1) return;
     if (scene !== this.#scene) {
       const isNew = String(this.#scene?.bounds) !== String(scene.bounds);
       this.#scene = scene;
-      this.trail.told();
+      this.#ways.told();
       if (isNew) this.fit();
       this.#isDirty = true;
     }
     if (world !== this.#state) {
       this.#state = world;
-      this.trail.put(world);
+      if (this.robot.mayOrderWorld) this.#ways.put(world);
       this.#isDirty = true;
     }
     if (!this.#isDirty) return;
