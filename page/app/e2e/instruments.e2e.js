@@ -3,7 +3,7 @@
 import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'vitest';
-import { barriers, until } from './robot.js';
+import { barriers, eventually, until } from './robot.js';
 import { scene } from './scene.js';
 
 const there = scene();
@@ -260,6 +260,29 @@ test('numbers are drawn and saved, everybody can use them, and one is in control
   assert.deepEqual(await barriers(other), [], 'dark');
   await control(page, other);
 }, 180_000);
+
+test('a lidar is drawn from above, and says what is nearest', async () => {
+  const page = await there.look.open(`${there.robot.url}#instruments`);
+  const lidar = page.getByRole('article', { name: 'lidar', exact: true });
+  await lidar.scrollIntoViewIfNeeded();
+  await lidar
+    .getByText(/The nearest thing is \d+ mm away, .*Something is seen in \d+ of 360 directions\./)
+    .waitFor();
+  const points = () =>
+    lidar.locator('canvas').evaluate((canvas) => {
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let at = 3; at < data.length; at += 4) if (data[at] > 200) count++;
+      return count;
+    });
+  await eventually('points', async () => (await points()) > 500);
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme });
+    assert.deepEqual(await barriers(page), [], `lidar, ${colorScheme}`);
+    if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/lidar-${colorScheme}.png` });
+  }
+  await page.context().close();
+});
 
 test('no page has complained', () => {
   assert.deepEqual(there.look.complaints, []);

@@ -298,6 +298,16 @@ export const en = {
     spark: (seconds: number) => `The last ${seconds} s`,
     inGraph: (path: string, field: string) => `${path}, ${field}: show it in the graph`,
     many: (count: number) => `${count} numbers`,
+    scan: (far: string, degrees: number, seen: number, all: number) =>
+      `The nearest thing is ${far} away, ${
+        degrees === 0
+          ? 'ahead'
+          : Math.abs(degrees) === 180
+            ? 'behind'
+            : `${Math.abs(degrees)}\u00b0 to the ${degrees > 0 ? 'right' : 'left'}`
+      }. Something is seen in ${seen} of ${all} directions.`,
+    scanNothing: 'Nothing is seen.',
+    scanOld: 'This is what was seen before it failed.',
     openEach: 'Show each',
     closeEach: 'Hide each',
     age: (count: number, unit: 's' | 'min' | 'h') => `${count} ${unit} ago`,

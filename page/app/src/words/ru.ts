@@ -308,6 +308,16 @@ export const ru: Words = {
     spark: (seconds) => `Последние ${seconds} с`,
     inGraph: (path, field) => `${path}, ${field}: показать на графике`,
     many: (count) => `Чисел: ${count}`,
+    scan: (far: string, degrees: number, seen: number, all: number) =>
+      `Ближайший предмет в ${far}, ${
+        degrees === 0
+          ? 'впереди'
+          : Math.abs(degrees) === 180
+            ? 'позади'
+            : `${Math.abs(degrees)}\u00b0 ${degrees > 0 ? 'вправо' : 'влево'}`
+      }. Направлений, где что-то видно: ${seen} из ${all}.`,
+    scanNothing: 'Ничего не видно.',
+    scanOld: 'Это то, что было видно до сбоя.',
     openEach: 'Показать каждое',
     closeEach: 'Скрыть',
     age: (count, unit) => `${count} ${{ s: 'с', min: 'мин', h: 'ч' }[unit]} назад`,
