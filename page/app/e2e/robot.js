@@ -61,7 +61,9 @@ export class Robot {
    * @param {number} seconds
    */
   record(file, seconds) {
-    const child = spawn(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree]);
+    // There it finds the world around the robot.
+    const env = { ...process.env, XDG_RUNTIME_DIR: this.home };
+    const child = spawn(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree], { env });
     let said = '';
     const begun = new Promise((done) => {
       for (const stream of [child.stdout, child.stderr]) {
