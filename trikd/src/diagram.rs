@@ -45,6 +45,8 @@ use watch::Watch;
 pub struct Diagram {
     locale: Locale,
     compat: Compat,
+    /// How long a question waits for its answer.
+    patience: Duration,
 }
 
 /// The engine of this build, with the language of messages and the rules that the environment names.
@@ -52,6 +54,7 @@ pub fn engine() -> impl Engine {
     let named = |name: &str| std::env::var(name).unwrap_or_default();
     Diagram {
         locale: locale(&named("TRIK_LANGUAGE")),
+        patience: Duration::from_secs(named("TRIK_ANSWER_S").parse().unwrap_or(limits::ANSWER_S)),
         compat: if named("TRIK_COMPAT") == settings::Compat::Fixed.name() {
             Compat::Fixed
         } else {
@@ -84,7 +87,7 @@ impl Engine for Diagram {
             Start::Debugged(path) => (path, true),
             Start::Script(_) | Start::Direct => return Err(Failure::NoFile),
         };
-        let mut robot = Robot::new(brick, host);
+        let mut robot = Robot::new(brick, host, self.patience);
         let mut watch = Watch::new(self.locale);
         let machine = match self.load(&path, host)? {
             Loaded::Diagram(machine) => *machine,

@@ -276,8 +276,10 @@ pub const DIAGRAM_COMMANDS: usize = 16;
 pub const DIAGRAM_MAIL: usize = 256;
 /// Bytes of a file that a block of a data-flow program reads.
 pub const DIAGRAM_FILE_BYTES: u64 = 1 << 20;
-/// Milliseconds that a diagram waits for the answer of a person.
-pub const QUESTION_MS: u64 = 120_000;
+/// Seconds that a diagram waits for the answer of a person, unless another time is named.
+pub const ANSWER_S: u64 = 120;
+/// The most that can be named: a day.
+pub const ANSWER_S_MAX: u64 = 86_400;
 /// Characters of a question, its variable and its default.
 pub const QUESTION_CHARACTERS: usize = 1000;
 /// Milliseconds between a question without an answer and the next one.

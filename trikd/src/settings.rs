@@ -193,6 +193,15 @@ pub struct Settings {
         default_value = "studio"
     )]
     pub compat: Compat,
+    /// Seconds that the block `Input` of a diagram waits for the answer of a person.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        env = "TRIKD_ANSWER_S",
+        default_value_t = limits::ANSWER_S,
+        value_parser = clap::value_parser!(u64).range(1..=limits::ANSWER_S_MAX)
+    )]
+    pub answer_s: u64,
     /// Language of messages of diagrams: English, or Russian if it begins with ru, as LANG does.
     #[arg(
         long,

@@ -21,8 +21,10 @@ struct Open {
 }
 
 /// The questions of a diagram.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Asking {
+    /// How long one waits.
+    patience: Duration,
     open: Option<Open>,
     count: u32,
     /// A block that got no answer may ask at once again, and has to wait until then.
@@ -30,6 +32,16 @@ pub(super) struct Asking {
 }
 
 impl Asking {
+    /// Each question waits for so long.
+    pub(super) fn new(patience: Duration) -> Self {
+        Self {
+            patience,
+            open: None,
+            count: 0,
+            rests: None,
+        }
+    }
+
     /// What was answered. A question that is new is told, with its number.
     pub(super) fn ask(
         &mut self,
@@ -48,12 +60,13 @@ impl Asking {
                 .text("variable", question.variable)
                 .text("question", question.prompt)
                 .text("default", question.default)
+                .plain("seconds", self.patience.as_secs())
                 .done();
             tell(self.count, &told);
             self.open = Some(Open {
                 key,
                 number: self.count,
-                until: now + Duration::from_millis(limits::QUESTION_MS),
+                until: now + self.patience,
                 answer: None,
                 default: match question.default {
                     "" => Answer::Cancelled,
@@ -100,7 +113,8 @@ mod tests {
 
     #[test]
     fn one_question_waits_for_its_answer_and_the_next_one_for_its_turn() {
-        let mut asking = Asking::default();
+        let patience = Duration::from_secs(120);
+        let mut asking = Asking::new(patience);
         let now = Instant::now();
         let mut told = Vec::new();
         let mut ask = |asking: &mut Asking, variable, now| {
@@ -122,11 +136,10 @@ mod tests {
         let rested = now + Duration::from_millis(limits::QUESTION_REST_MS);
         assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
         assert_eq!(ask(&mut asking, "n", rested), Answer::Waiting);
-        let late = rested + Duration::from_millis(limits::QUESTION_MS);
+        let late = rested + patience;
         assert_eq!(ask(&mut asking, "n", late), Answer::Text("1".into()));
         assert_eq!(told.len(), 3);
-        let first =
-            "{\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"1\"}";
+        let first = "{\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"1\",\"seconds\":120}";
         assert_eq!(told[0], (1, first.to_owned()));
     }
 }

@@ -22,7 +22,7 @@ use std::fs::OpenOptions;
 use std::io::{Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::process::{Child, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The robot of one diagram.
 pub struct Robot<'a> {
@@ -62,8 +62,8 @@ impl Random {
 }
 
 impl<'a> Robot<'a> {
-    /// The robot over a tree. Opens nothing yet.
-    pub fn new(brick: &'a Brick, host: &'a Host) -> Self {
+    /// The robot over a tree, on which a question waits for so long. Opens nothing yet.
+    pub fn new(brick: &'a Brick, host: &'a Host, patience: Duration) -> Self {
         Self {
             brick,
             host,
@@ -74,7 +74,7 @@ impl<'a> Robot<'a> {
             commands: Vec::new(),
             told: HashSet::new(),
             random: Random::new(),
-            asking: Asking::default(),
+            asking: Asking::new(patience),
         }
     }
 

@@ -268,6 +268,7 @@ pub fn start(
         .env("TRIK_TREE", &settings.tree)
         .env("TRIK_LANGUAGE", &settings.language)
         .env("TRIK_COMPAT", settings.compat.name())
+        .env("TRIK_ANSWER_S", settings.answer_s.to_string())
         // With it programs in all languages draw.
         .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.

@@ -446,14 +446,14 @@ fn a_diagram_asks_a_person_and_goes_on_if_nobody_is_there() {
     person.send("run:ask.qrs");
     person.expect("info: ask.qrs has started");
     person.expect(
-        "question: {\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"7\"}",
+        "question: {\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"7\",\"seconds\":120}",
     );
     // Answers to other questions, and of nobody, count for nothing.
     person.send("answer:9:1");
     person.send("answer:x:1");
     person.send("answer:1:2 + 1");
     person.expect(
-        "question: {\"number\":2,\"variable\":\"m\",\"question\":\"And?\",\"default\":\"\"}",
+        "question: {\"number\":2,\"variable\":\"m\",\"question\":\"And?\",\"default\":\"\",\"seconds\":120}",
     );
     person.send("answer:2:'a:b'");
     person.expect("print: 30\n");

@@ -27,6 +27,8 @@ export interface Question {
   variable: string;
   question: string;
   default?: string;
+  /** How long it waits for its answer. */
+  seconds?: number;
 }
 
 /** Lines of output that are kept, and letters of one of them. */
@@ -82,6 +84,7 @@ export class Programs {
   /** Why the last change of a running diagram was not made. */
   unchanged = $state('');
   #number = 0;
+  #patience: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly link: Link) {}
 
@@ -168,11 +171,21 @@ export class Programs {
       this.running = runningOf(message);
       void this.refresh();
     } else if (message.startsWith('question: ')) {
-      this.question = JSON.parse(message.slice('question: '.length)) as Question;
+      this.#ask(JSON.parse(message.slice('question: '.length)) as Question);
     } else {
       const kind = KINDS.find((one) => message.startsWith(`${one}: `));
       if (kind) this.#say(kind, message.slice(kind.length + 2));
     }
+  }
+
+  /** The program goes on without an answer after its time, and then none is wanted. */
+  #ask(question: Question): void {
+    clearTimeout(this.#patience);
+    this.question = question;
+    if (question.seconds === undefined) return;
+    this.#patience = setTimeout(() => {
+      if (this.question?.number === question.number) this.question = undefined;
+    }, question.seconds * 1000);
   }
 
   #say(kind: OutputLine['kind'], text: string): void {

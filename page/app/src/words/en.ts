@@ -160,6 +160,7 @@ export const en = {
   clear: 'Clear',
   answer: 'Answer',
   noAnswer: 'No answer',
+  answerLeft: (seconds: number) => `In ${seconds} s the program goes on without an answer.`,
 
   noDiagram: 'No diagram runs. Start one, or choose "Show" beside a diagram in the list of programs.',
   sheets: 'Diagrams of this project',
