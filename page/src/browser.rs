@@ -6,7 +6,7 @@
 use crate::configuration;
 use crate::control::Browser;
 use crate::drive::{self, Moves};
-use crate::error::Error;
+use crate::error::{Busy, Error};
 use crate::limits;
 use crate::relay::{self, Came, Outgoing, Request};
 use crate::shared::Shared;
@@ -16,13 +16,14 @@ use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
+use lang_text::problem::Locale;
 use std::path::Path;
 use std::sync::Arc;
 use tokio::sync::{Notify, OwnedSemaphorePermit, mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
 
 /// Serves one browser until it is gone.
-pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser) {
+pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale: Locale) {
     let (sink, stream) = socket.split();
     let (news, told) = mpsc::channel(limits::NEWS);
     let moves = Arc::<Moves>::default();
@@ -61,6 +62,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser) {
         told,
         from_robot,
         is_looked_at,
+        locale,
     };
     tokio::select! {
         () = listener.run(stream) => {}
@@ -114,7 +116,7 @@ impl Listener {
             if let Err(error) = refused
                 && self.news.capacity() > limits::NEWS / 2
             {
-                let _ = self.news.try_send(News::Refused(error.to_string()));
+                let _ = self.news.try_send(News::Refused(error.words()));
             }
         }
     }
@@ -147,7 +149,7 @@ impl Listener {
                 if words.len() <= limits::WORLD_QUICK_BYTES {
                     return world.order(&words).map_err(|why| Error::World(why.0));
                 }
-                let busy = |_| Error::World("other worlds are being read: try again".to_owned());
+                let busy = |_| Error::Busy(Busy::Worlds);
                 let turn = self
                     .shared
                     .large
@@ -158,7 +160,7 @@ impl Listener {
                 tokio::task::spawn_blocking(move || {
                     let _turn = turn;
                     if let Err(why) = world.order(&words) {
-                        let _ = news.try_send(News::Refused(Error::World(why.0).to_string()));
+                        let _ = news.try_send(News::Refused(Error::World(why.0).words()));
                     }
                 });
                 Ok(())
@@ -166,7 +168,7 @@ impl Listener {
             Order::Configure(text) => {
                 if let Err(why) = self.configure(text) {
                     // Not among other refusals: the page waits for this answer.
-                    let _ = (self.news).try_send(News::Configured(Some(why.to_string())));
+                    let _ = (self.news).try_send(News::Configured(Some(why.words())));
                 }
                 Ok(())
             }
@@ -214,14 +216,13 @@ impl Listener {
             return Err(Error::Fixed);
         }
         self.need()?;
-        let busy =
-            |_| Error::Configuration("another configuration is tried: wait for it".to_owned());
+        let busy = |_| Error::Busy(Busy::Configuration);
         let turn = (self.shared.large.clone().try_acquire_owned()).map_err(busy)?;
         let (news, shared) = (self.news.clone(), self.shared.clone());
         tokio::task::spawn_blocking(move || {
             let _turn = turn;
             let done = configuration::replace(&shared.settings.tree, &text);
-            let _ = news.try_send(News::Configured(done.err().map(|why| why.to_string())));
+            let _ = news.try_send(News::Configured(done.err().map(|why| why.words())));
         });
         Ok(())
     }
@@ -233,14 +234,14 @@ impl Listener {
         change: impl FnOnce(&Path) -> Result<(), Error> + Send + 'static,
     ) -> Result<(), Error> {
         self.need()?;
-        let busy = |_| Error::Robot("other files are being read or changed: try again".to_owned());
+        let busy = |_| Error::Busy(Busy::Files);
         let turn = (self.shared.large.clone().try_acquire_owned()).map_err(busy)?;
         let (news, shared) = (self.news.clone(), self.shared.clone());
         tokio::task::spawn_blocking(move || {
             let _turn = turn;
             let folder = shared.settings.programs.as_deref();
             let outcome = folder.ok_or(Error::NoFolder).and_then(change);
-            let told = outcome.map_or_else(|why| News::Refused(why.to_string()), |()| done);
+            let told = outcome.map_or_else(|why| News::Refused(why.words()), |()| done);
             // A browser that does not read is told nothing.
             let _ = news.try_send(told);
         });
@@ -255,7 +256,7 @@ impl Listener {
             self.need()?;
         }
         let room = self.room(&request)?;
-        let full = |_| Error::Robot("the robot does not take programs now".to_owned());
+        let full = |_| Error::Busy(Busy::Requests);
         let request = Request {
             bytes: request,
             room,
@@ -271,7 +272,7 @@ impl Listener {
         if !request.starts_with(b"file:") {
             return Err(Error::Long(request.len(), limits::REQUEST_BYTES_MAX));
         }
-        let full = || Error::Robot("other uploads wait for the robot: try again".to_owned());
+        let full = || Error::Busy(Busy::Uploads);
         let bytes = u32::try_from(request.len()).map_err(|_| full())?;
         let uploads = self.shared.uploads.clone();
         let room = uploads.try_acquire_many_owned(bytes);
@@ -287,6 +288,8 @@ struct Teller {
     told: mpsc::Receiver<News>,
     from_robot: mpsc::Receiver<Came>,
     is_looked_at: watch::Receiver<bool>,
+    /// Sentences are in this language.
+    locale: Locale,
 }
 
 impl Teller {
@@ -357,7 +360,8 @@ impl Teller {
     }
 
     async fn say(&mut self, news: News) -> bool {
-        self.send(Message::Text(news.text().into())).await
+        self.send(Message::Text(news.text(self.locale).into()))
+            .await
     }
 
     async fn send(&mut self, message: Message) -> bool {

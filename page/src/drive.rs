@@ -3,7 +3,7 @@
 //! Owns which actuators it has moved. The filesystem checks every value, and knows leases: a program that has one keeps it.
 
 use crate::control::Browser;
-use crate::error::Error;
+use crate::error::{Busy, Error};
 use crate::limits;
 use crate::word::News;
 use std::collections::HashMap;
@@ -55,7 +55,7 @@ impl Moves {
             }
             fits
         });
-        let full = || Error::Robot("too many orders wait: the robot does not answer".to_owned());
+        let full = || Error::Busy(Busy::Values);
         fits.then_some(()).ok_or_else(full)
     }
 
@@ -144,9 +144,7 @@ fn carry_out(tree: &Path, driven: &mut Driven, work: Waiting) -> Vec<News> {
     if work.stop {
         driven.clear();
         if let Err(error) = fs::write(tree.join("stop"), "1") {
-            said.push(News::Refused(
-                Error::File("stop".to_owned(), error).to_string(),
-            ));
+            said.push(News::Refused(Error::File("stop".to_owned(), error).words()));
         }
     }
     if work.rest {
@@ -157,7 +155,7 @@ fn carry_out(tree: &Path, driven: &mut Driven, work: Waiting) -> Vec<News> {
         said.push(News::Written {
             path,
             value,
-            why: why.map(|why| why.to_string()),
+            why: why.map(|why| why.words()),
         });
     }
     said

@@ -3,7 +3,8 @@
 //! Owns the errors of this crate. Knows no command.
 
 use crate::limits::MISTAKES_MAX;
-use lang_text::problem::{Locale, Problem};
+use crate::words;
+use lang_text::problem::{Locale, Problem, Words};
 use std::fmt;
 use std::io;
 use std::net::SocketAddr;
@@ -15,6 +16,36 @@ pub enum Blame {
     Caller,
     /// The machine.
     Machine,
+}
+
+/// What is being done already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Busy {
+    /// Values for actuators wait.
+    Values,
+    /// Requests to the control port wait.
+    Requests,
+    /// Uploads wait for the robot.
+    Uploads,
+    /// Files are read or changed.
+    Files,
+    /// Worlds are read.
+    Worlds,
+    /// A configuration is tried.
+    Configuration,
+}
+
+impl Busy {
+    fn sentence(self) -> &'static str {
+        match self {
+            Self::Values => "too many orders wait: the robot does not answer",
+            Self::Requests => "the robot does not take programs now",
+            Self::Uploads => "other uploads wait for the robot: try again",
+            Self::Files => "other files are being read or changed: try again",
+            Self::Worlds => "other worlds are being read: try again",
+            Self::Configuration => "another configuration is tried: wait for it",
+        }
+    }
 }
 
 /// What is wrong. Shown, it is a sentence for the person.
@@ -44,6 +75,8 @@ pub enum Error {
     Unpaired,
     /// The robot's control port cannot be reached.
     Robot(String),
+    /// It is not done now.
+    Busy(Busy),
     /// The name is none of a program.
     Name(String),
     /// No program can have this name, or be in this folder.
@@ -72,6 +105,11 @@ impl Error {
         Self::Diagram(format!("{name}: {}", lines.join("; ")))
     }
 
+    /// The sentence in each language.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
+    }
+
     /// The person or the part that can mend it.
     pub fn blame(&self) -> Blame {
         match self {
@@ -94,7 +132,7 @@ impl Error {
             | Self::Text(_)
             | Self::Fixed
             | Self::Configuration(_) => Blame::Caller,
-            Self::Thread(_) | Self::Robot(_) => Blame::Machine,
+            Self::Thread(_) | Self::Robot(_) | Self::Busy(_) => Blame::Machine,
         }
     }
 }
@@ -117,6 +155,7 @@ impl fmt::Display for Error {
             | Self::Diagram(why)
             | Self::Change(why)
             | Self::Configuration(why) => f.write_str(why),
+            Self::Busy(what) => f.write_str(what.sentence()),
             Self::Large(name, bytes, most) => {
                 write!(f, "{name} has {bytes} bytes: at most {most} can be edited here")
             }
@@ -139,7 +178,7 @@ impl fmt::Display for Error {
 }
 
 /// What the system says, without the number.
-fn plain(error: &io::Error) -> String {
+pub(crate) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error")
         .next()

@@ -14,7 +14,7 @@
 //! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
 //!   blocks
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
-//! - `error`, `limits`
+//! - `error`, `words`, `limits`
 
 #![forbid(unsafe_code)]
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -39,6 +39,7 @@ mod server;
 mod shared;
 mod store;
 mod word;
+mod words;
 pub mod world;
 
 pub use server::Page;

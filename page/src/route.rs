@@ -134,6 +134,7 @@ async fn file(uri: Uri) -> Response {
 async fn socket(
     State(shared): State<Arc<Shared>>,
     ConnectInfo(Peer(address)): ConnectInfo<Peer>,
+    Query(query): Query<HashMap<String, String>>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
     let Ok(seat) = shared.browsers.clone().try_acquire_owned() else {
@@ -141,6 +142,7 @@ async fn socket(
         let why = format!("{most} browsers look already: close some, or wait");
         return text(StatusCode::SERVICE_UNAVAILABLE, why);
     };
+    let locale = locale(&query);
     let number = shared.number.fetch_add(1, Ordering::Relaxed);
     let who = Browser { number, address };
     // A computer that may only look sends nothing large.
@@ -154,7 +156,7 @@ async fn socket(
         .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
         .read_buffer_size(limits::READ_BYTES)
         .on_upgrade(move |socket| async move {
-            browser::serve(shared, socket, who).await;
+            browser::serve(shared, socket, who, locale).await;
             drop(seat);
         })
 }
@@ -162,15 +164,19 @@ async fn socket(
 /// Does something with files on another thread, and answers with what came out.
 async fn with_files<T: Send + 'static>(
     shared: &Shared,
+    locale: Locale,
     work: impl FnOnce() -> Result<T, Error> + Send + 'static,
     answer: impl FnOnce(T) -> Response,
 ) -> Response {
     match in_turn(shared.large.clone(), work).await {
         Ok(Ok(done)) => answer(done),
         Ok(Err(error @ (Error::Name(_) | Error::File(..)))) => {
-            text(StatusCode::NOT_FOUND, error.to_string())
+            text(StatusCode::NOT_FOUND, error.words().in_locale(locale))
         }
-        Ok(Err(error)) => text(StatusCode::UNPROCESSABLE_ENTITY, error.to_string()),
+        Ok(Err(error)) => text(
+            StatusCode::UNPROCESSABLE_ENTITY,
+            error.words().in_locale(locale),
+        ),
         Err(_) => text(
             StatusCode::INTERNAL_SERVER_ERROR,
             "the page could not be made",
@@ -202,28 +208,39 @@ fn json(value: serde_json::Value) -> Response {
 }
 
 async fn programs(State(shared): State<Arc<Shared>>) -> Response {
+    // It says nothing in words.
+    let locale = Locale::English;
     let seen = shared.clone();
     let work = move || {
         let folder = seen.settings.programs.as_deref();
         Ok(folder.map_or_else(|| serde_json::json!([]), store::list))
     };
-    with_files(&shared, work, json).await
+    with_files(&shared, locale, work, json).await
 }
 
-async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
+async fn program(
+    State(shared): State<Arc<Shared>>,
+    Path(name): Path<String>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
+    let locale = locale(&query);
     let seen = shared.clone();
     let work = move || store::text(folder(&seen, &name)?, &name);
     let kind = [
         (CONTENT_TYPE, "text/plain; charset=utf-8"),
         (CACHE_CONTROL, "no-store"),
     ];
-    with_files(&shared, work, |text| (kind, text).into_response()).await
+    with_files(&shared, locale, work, |text| (kind, text).into_response()).await
 }
 
-async fn configured(State(shared): State<Arc<Shared>>) -> Response {
+async fn configured(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
+    let locale = locale(&query);
     let seen = shared.clone();
     let work = move || configuration::read(&seen.settings.tree);
-    with_files(&shared, work, json).await
+    with_files(&shared, locale, work, json).await
 }
 
 async fn diagram(
@@ -231,9 +248,10 @@ async fn diagram(
     Path(name): Path<String>,
     Query(query): Query<HashMap<String, String>>,
 ) -> Response {
+    let locale = locale(&query);
     let seen = shared.clone();
-    let work = move || diagrams::sheets(folder(&seen, &name)?, &name, locale(&query));
-    with_files(&shared, work, json).await
+    let work = move || diagrams::sheets(folder(&seen, &name)?, &name, locale);
+    with_files(&shared, locale, work, json).await
 }
 
 /// A diagram with another value in one of its blocks; nothing is written.
@@ -242,6 +260,7 @@ async fn changed(
     Path(name): Path<String>,
     Query(mut query): Query<HashMap<String, String>>,
 ) -> Response {
+    let locale = locale(&query);
     let seen = shared.clone();
     let work = move || {
         let mut take = |key: &str| query.remove(key).unwrap_or_default();
@@ -250,13 +269,13 @@ async fn changed(
             property: take("property"),
             value: take("value"),
         };
-        diagrams::changed(folder(&seen, &name)?, &name, &change, locale(&query))
+        diagrams::changed(folder(&seen, &name)?, &name, &change, locale)
     };
     let kind = [
         (CONTENT_TYPE, "application/octet-stream"),
         (CACHE_CONTROL, "no-store"),
     ];
-    with_files(&shared, work, |bytes| (kind, bytes).into_response()).await
+    with_files(&shared, locale, work, |bytes| (kind, bytes).into_response()).await
 }
 
 /// The folder of programs; without one there is no program of this name.
@@ -273,6 +292,7 @@ fn locale(query: &HashMap<String, String>) -> Locale {
 }
 
 async fn table(State(shared): State<Arc<Shared>>) -> Response {
+    let locale = Locale::English;
     let seen = shared.clone();
     let work = move || {
         Ok(plain::table(
@@ -285,7 +305,7 @@ async fn table(State(shared): State<Arc<Shared>>) -> Response {
         (CONTENT_TYPE, "text/html; charset=utf-8"),
         (CACHE_CONTROL, "no-store"),
     ];
-    with_files(&shared, work, |page| (kind, page).into_response()).await
+    with_files(&shared, locale, work, |page| (kind, page).into_response()).await
 }
 
 #[cfg(test)]

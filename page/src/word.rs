@@ -5,6 +5,7 @@
 use crate::control::Browser;
 use crate::error::Error;
 use crate::limits;
+use lang_text::problem::{Locale, Words};
 use serde_json::{Map, Value};
 
 /// What a browser wants.
@@ -106,14 +107,14 @@ pub enum News {
         /// What should have been written.
         value: String,
         /// Why it was not.
-        why: Option<String>,
+        why: Option<Words>,
     },
     /// The configuration was replaced, or not and why.
-    Configured(Option<String>),
+    Configured(Option<Words>),
     /// A program has another name; None: it is gone.
     Programs(String, Option<String>),
     /// Something was not done.
-    Refused(String),
+    Refused(Words),
     /// What stands still in the world.
     Scene(String),
     /// What moves.
@@ -133,8 +134,12 @@ impl News {
         }
     }
 
-    /// As JSON.
-    pub fn text(&self) -> String {
+    /// As JSON, with sentences in a language.
+    pub fn text(&self, locale: Locale) -> String {
+        let said = |why: &Option<Words>| -> Value {
+            why.as_ref()
+                .map_or(Value::Null, |why| why.in_locale(locale).into())
+        };
         let object = |is: &str, members: Vec<(&str, Value)>| {
             let mut all = Map::new();
             all.insert("is".to_owned(), is.into());
@@ -175,11 +180,11 @@ impl News {
                 vec![
                     ("path", path.as_str().into()),
                     ("value", value.as_str().into()),
-                    ("why", why.clone().into()),
+                    ("why", said(why)),
                 ],
             ),
-            Self::Configured(why) => object("configured", vec![("why", why.clone().into())]),
-            Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
+            Self::Configured(why) => object("configured", vec![("why", said(why))]),
+            Self::Refused(why) => object("refused", vec![("why", why.in_locale(locale).into())]),
             Self::Programs(name, to) => object(
                 "programs",
                 vec![("name", name.as_str().into()), ("to", to.clone().into())],
@@ -320,16 +325,18 @@ mod tests {
                 why: None,
             },
             News::Configured(None),
-            News::Refused("no".to_owned()),
+            News::Refused(Words::new("no", "net")),
             News::Scene("{\"walls\":[]}".to_owned()),
             News::World("{\"t\":1}".to_owned()),
             News::Playback("{\"at_s\":1}".to_owned()),
             News::Beat,
         ];
         for news in all {
-            let text = news.text();
+            let text = news.text(Locale::English);
             let value: Value = serde_json::from_str(&text).unwrap();
             assert!(value["is"].is_string(), "{text}");
         }
+        let refused = News::Refused(Words::new("no", "net")).text(Locale::Russian);
+        assert_eq!(refused, "{\"is\":\"refused\",\"why\":\"net\"}");
     }
 }

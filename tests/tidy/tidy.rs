@@ -242,7 +242,7 @@ fn sources_and_documents_are_ascii() {
     let programs = root().join("trikd/tests/js");
     found.retain(|path| !path.starts_with(&programs));
     // Messages for pupils, in Russian too.
-    let speaks_russian = ["lang", "sim/src", "trik/src"].map(|part| root().join(part));
+    let speaks_russian = ["lang", "page/src", "sim/src", "trik/src"].map(|part| root().join(part));
     // A row of a block or of a reading has its words in both languages.
     let blocks =
         ["lang/diagram/src/blocks", "lang/dataflow/src/blocks"].map(|part| root().join(part));

@@ -3,6 +3,7 @@
 // Owns what was heard of it and the versions that were in force while this page was open. Knows no editor and no Lua.
 
 import type { Link } from '../link/link';
+import { language } from '../words';
 
 /** Versions that are kept. */
 const VERSIONS = 30;
@@ -59,7 +60,7 @@ export class Configuration {
 
   async #fetch(): Promise<ConfigurationAnswer | undefined> {
     try {
-      const answer = await fetch('/configuration');
+      const answer = await fetch(`/configuration?language=${language}`);
       if (!answer.ok) {
         this.absence = (await answer.text()).trim();
         return undefined;

@@ -2,6 +2,9 @@
 
 import type { RecordingFault } from '../past/wrong';
 
+/** A sentence of the robot in English, with `{name}` for what is in it, and the same in the language of the page. */
+export type Heard = readonly [english: string, translation: string];
+
 export const en = {
   title: (robot: string) => (robot ? `${robot} - TRIK` : 'TRIK'),
   stop: 'Stop',
@@ -95,6 +98,9 @@ export const en = {
       empty: () => 'The recording has no values of a robot.',
     } as Record<RecordingFault, (at: string, detail: string) => string>,
   },
+
+  /** The robot speaks English. */
+  heard: [] as Heard[],
 
   programs: 'Programs',
   runs: (name: string) => `${name} runs`,

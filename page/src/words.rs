@@ -1,0 +1,117 @@
+//! What is wrong, in Russian: the sentences of [`crate::error::Error`] for a browser that speaks it.
+//!
+//! Owns the texts. The English ones stand with the errors.
+
+use crate::error::{Busy, Error};
+use std::io;
+
+/// The sentence in Russian.
+pub(crate) fn russian(error: &Error) -> String {
+    match error {
+        Error::Address(address, why) => format!("страница по адресу {address}: {}", system(why)),
+        Error::Thread(why) => format!("поток для страницы: {}", system(why)),
+        Error::Path(path) => format!("у этого робота нет исполнительного устройства '{path}'"),
+        Error::File(path, why) => format!("{path}: {}", system(why)),
+        Error::Words(words) => format!("'{words}' — не распоряжение"),
+        Error::Long(bytes, most) => {
+            format!("запрос слишком длинный: {bytes} Б, а можно не больше {most}")
+        }
+        Error::NoWorld => "у настоящего робота нет мира, которым можно распоряжаться".to_owned(),
+        Error::NoPlayback => "здесь не воспроизводится никакая запись".to_owned(),
+        // These have been said by others.
+        Error::World(why)
+        | Error::Robot(why)
+        | Error::Diagram(why)
+        | Error::Change(why)
+        | Error::Configuration(why) => why.clone(),
+        Error::Busy(what) => busy(*what).to_owned(),
+        Error::Large(name, bytes, most) => {
+            format!("{name}: {bytes} Б, а здесь можно редактировать не больше {most}")
+        }
+        Error::Text(name) => format!("{name} — не текст в UTF-8"),
+        Error::Fixed => {
+            "конфигурацию нельзя заменить с этой страницы; на роботе это разрешает trikd --page-configures"
+                .to_owned()
+        }
+        Error::Taken(who) => format!("роботом управляет {who}; сначала возьмите управление"),
+        Error::Unpaired => {
+            "с этого компьютера можно только смотреть: нажмите Enter на роботе в течение 30 с и повторите"
+                .to_owned()
+        }
+        Error::Name(name) => format!("программы '{name}' нет"),
+        Error::NewName(name) => format!(
+            "'{name}' — не имя для программы: оно слишком длинное, в нём двоеточие, обратная косая черта или управляющие символы, часть его пуста или начинается с точки, или его папки нет"
+        ),
+        Error::NoFolder => "программы этого робота — на другом компьютере".to_owned(),
+    }
+}
+
+fn busy(what: Busy) -> &'static str {
+    match what {
+        Busy::Values => "ждёт слишком много распоряжений: робот не отвечает",
+        Busy::Requests => "робот сейчас не принимает программы",
+        Busy::Uploads => "роботу отправляются другие файлы: повторите",
+        Busy::Files => "читаются или меняются другие файлы: повторите",
+        Busy::Worlds => "читаются другие миры: повторите",
+        Busy::Configuration => "проверяется другая конфигурация: подождите",
+    }
+}
+
+/// What the system says, by its own words; others stay as they are.
+const SYSTEM: [(&str, &str); 12] = [
+    ("No such file or directory", "такого файла нет"),
+    ("Permission denied", "нет прав"),
+    ("Operation not permitted", "это не разрешено"),
+    ("Invalid argument", "такое значение не принимается"),
+    ("Device or resource busy", "занято другой программой"),
+    ("Connection timed out", "устройство не ответило вовремя"),
+    ("No such device", "устройства нет"),
+    (
+        "Numerical result out of range",
+        "значение вне допустимых пределов",
+    ),
+    ("Input/output error", "устройство отказало"),
+    ("No space left on device", "на диске нет места"),
+    ("Read-only file system", "диск только для чтения"),
+    ("Address already in use", "адрес уже занят"),
+];
+
+fn system(error: &io::Error) -> String {
+    let said = crate::error::plain(error);
+    let known = SYSTEM.iter().find(|(english, _)| *english == said);
+    known.map_or(said, |(_, russian)| (*russian).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_person_meets_is_said_in_russian() {
+        let all = [
+            Error::Taken("10.0.0.1".to_owned()),
+            Error::Unpaired,
+            Error::NoFolder,
+            Error::NoWorld,
+            Error::Fixed,
+            Error::Name("a.py".to_owned()),
+            Error::NewName("a:b".to_owned()),
+            Error::Path("m".to_owned()),
+            Error::Busy(Busy::Values),
+            Error::File("motors/M1".to_owned(), io::Error::from_raw_os_error(16)),
+            Error::File("motors/M1".to_owned(), io::Error::from_raw_os_error(19)),
+        ];
+        for error in all {
+            let words = error.words();
+            assert_ne!(words.english, words.russian);
+            assert!(words.english.is_ascii(), "{}", words.english);
+            let letters = words
+                .russian
+                .chars()
+                .filter(|letter| ('а'..='я').contains(letter));
+            assert!(letters.count() >= 8, "{}", words.russian);
+        }
+        let other = Error::File("m".to_owned(), io::Error::from_raw_os_error(71));
+        assert_eq!(other.words().russian, "m: Protocol error");
+    }
+}
