@@ -90,13 +90,13 @@ try {
   await page.getByText('Refused').waitFor();
   await shot('configuration');
   // Over a replay the place is that of the wheels, as on a real robot.
-  const file = join(robot.home, 'run.mcap');
-  const { begun, recorded } = robot.record(file, 8);
+  const run = join(robot.home, 'run.mcap');
+  const { begun, recorded } = robot.record(run, 8);
   await begun;
   robot.write('motors/M3/value', 45);
   robot.write('motors/M4/value', 60);
   await recorded;
-  const player = await Robot.replay(file);
+  const player = await Robot.replay(run);
   try {
     await page.goto(`${player.url}#world`);
     await page.locator('.stage canvas').waitFor();
