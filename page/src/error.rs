@@ -3,8 +3,7 @@
 //! Owns the errors of this crate. Knows no command.
 
 use crate::limits::MISTAKES_MAX;
-use crate::words;
-use lang_text::problem::{Locale, Problem, Words};
+use lang_text::problem::{Locale, Problem};
 use std::fmt;
 use std::io;
 use std::net::SocketAddr;
@@ -103,11 +102,6 @@ impl Error {
         let lines = problems.iter().take(MISTAKES_MAX);
         let lines: Vec<_> = lines.map(|problem| problem.in_locale(locale)).collect();
         Self::Diagram(format!("{name}: {}", lines.join("; ")))
-    }
-
-    /// The sentence in each language.
-    pub fn words(&self) -> Words {
-        Words::new(self.to_string(), words::russian(self))
     }
 
     /// The person or the part that can mend it.

@@ -3,10 +3,18 @@
 //! Owns the texts. The English ones stand with the errors.
 
 use crate::error::{Busy, Error};
+use lang_text::problem::Words;
 use std::io;
 
+impl Error {
+    /// The sentence in each language.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), russian(self))
+    }
+}
+
 /// The sentence in Russian.
-pub(crate) fn russian(error: &Error) -> String {
+fn russian(error: &Error) -> String {
     match error {
         Error::Address(address, why) => format!("страница по адресу {address}: {}", system(why)),
         Error::Thread(why) => format!("поток для страницы: {}", system(why)),

@@ -3,11 +3,12 @@
 //! Owns who takes it. Looks at nothing while nobody does; a tree that is not there yet is waited for. Lines about programs and
 //! messages come from the owner of the desk.
 
+use crate::clock::now_ns;
 use crate::entry::{Batch, Entry};
 use crate::error::Error;
 use crate::kept::{self, BlackBox, OnSaved, SaveReason};
 use crate::limits;
-use crate::watch::{Wants, Watch, Wish, now_ns};
+use crate::watch::{Wants, Watch, Wish};
 use journal::standard::{Level, Log};
 use journal::write::Story;
 use std::collections::HashSet;

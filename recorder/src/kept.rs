@@ -4,11 +4,11 @@
 //! it is too old; so a process that is killed loses what the last second has brought and no more. Saving puts the parts into
 //! one file, which stays. Whether the folder is on a disk or in memory is the business of the one who names it.
 
+use crate::clock::now_ns;
 use crate::entry::{Batch, Entry};
 use crate::error::Error;
 use crate::file::{Disk, Writing};
 use crate::limits;
-use crate::watch::now_ns;
 use std::collections::VecDeque;
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter};

@@ -18,6 +18,7 @@
 // An entry that is forgotten must not be lost in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+pub mod clock;
 pub mod desk;
 pub mod entry;
 pub mod error;

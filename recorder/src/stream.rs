@@ -3,13 +3,14 @@
 //! Owns what the client wants: patterns of nodes, and how often each may speak. A client that does not read loses events and
 //! is told how many; it delays nobody. Knows no network.
 
+use crate::clock::now_ns;
 use crate::desk::Listener;
 use crate::entry::{Entry, Known};
 use crate::error::Error;
 use crate::limits::{PATTERN_BYTES_MAX, PATTERNS_MAX};
 use crate::pattern::matches;
 use crate::pen::Pen;
-use crate::watch::{Wants, Wish, now_ns};
+use crate::watch::{Wants, Wish};
 use journal::write::{Out, Writer};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;

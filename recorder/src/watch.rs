@@ -3,6 +3,7 @@
 //! Owns what has been seen by now, and the newest of each node. Looks when it is told to, which must be often enough that no
 //! ring goes round; waits for nothing and counts what was overwritten meanwhile. Keeps no file.
 
+use crate::clock::{clock_ns, now_ns, offset_ns};
 use crate::entry::{Entry, Known};
 use crate::error::Error;
 use crate::world::World;
@@ -11,8 +12,7 @@ use journal::layout::Layout;
 use journal::node::Node;
 use journal::standard::{Level, Log};
 use journal::write::{ABOUT, Story};
-use nix::sys::time::TimeSpec;
-use nix::time::{ClockId, clock_gettime};
+use nix::time::ClockId;
 use sample_bus::{Event, Reader, Step};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
@@ -458,21 +458,4 @@ fn log(root: &Path) -> Option<File> {
         }
     }
     Some(log)
-}
-
-fn clock_ns(clock: ClockId) -> i64 {
-    // Seconds of the controller have 32 bits.
-    #[allow(clippy::useless_conversion, reason = "they have 64 on a PC")]
-    let ns = |time: TimeSpec| i64::from(time.tv_sec()) * 1_000_000_000 + i64::from(time.tv_nsec());
-    clock_gettime(clock).map_or(0, ns)
-}
-
-/// What the clock of the world is ahead of the machine's own.
-fn offset_ns() -> i64 {
-    clock_ns(ClockId::CLOCK_REALTIME) - clock_ns(ClockId::CLOCK_MONOTONIC)
-}
-
-/// The time of the world, in ns since 1970.
-pub fn now_ns() -> u64 {
-    u64::try_from(clock_ns(ClockId::CLOCK_REALTIME)).unwrap_or(0)
 }

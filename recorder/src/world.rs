@@ -2,9 +2,9 @@
 //!
 //! Owns the names of these files, and how much of them goes into a recording. Knows nothing of what is in them.
 
+use crate::clock::now_ns;
 use crate::entry::Entry;
 use crate::limits;
-use crate::watch::now_ns;
 use journal::standard::{Level, Log};
 use journal::write::Story;
 use std::fs::File;
@@ -22,7 +22,7 @@ pub const PLACES: &str = "places.json";
 pub const ATTACHED: &str = "world.json";
 
 /// One of the files.
-struct Told {
+struct TextFile {
     path: PathBuf,
     /// Its number and its time.
     stamp: Option<(u64, i64, i64)>,
@@ -30,7 +30,7 @@ struct Told {
     text: Option<Arc<[u8]>>,
 }
 
-impl Told {
+impl TextFile {
     fn new(path: PathBuf, most: u64) -> Self {
         Self {
             path,
@@ -60,16 +60,16 @@ impl Told {
 
 /// A world that is looked at.
 pub(crate) struct World {
-    scene: Told,
-    places: Told,
+    scene: TextFile,
+    places: TextFile,
     looks_at: Instant,
 }
 
 impl World {
     /// That of this folder, which need not be there yet.
     pub(crate) fn new(folder: &Path) -> Self {
-        let scene = Told::new(folder.join(SCENE), limits::WORLD_SCENE_BYTES_MAX);
-        let places = Told::new(folder.join(PLACES), limits::WORLD_PLACES_BYTES_MAX);
+        let scene = TextFile::new(folder.join(SCENE), limits::WORLD_SCENE_BYTES_MAX);
+        let places = TextFile::new(folder.join(PLACES), limits::WORLD_PLACES_BYTES_MAX);
         Self {
             scene,
             places,

@@ -3,7 +3,7 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 22] = [
+const PAUSES: [(&str, usize, &str); 23] = [
     ("bridge/src/http.rs", 1, "between two looks"),
     ("page/src/server/tests.rs", 1, "between two looks"),
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
@@ -81,6 +81,7 @@ const SCRIPTS: [(&str, usize, &str); 12] = [
         2,
         "between two looks, and keepalives at their rate",
     ),
+    ("page/app/e2e/around.e2e.js", 1, "between two looks"),
     ("page/app/e2e/bench.js", 2, "measures for a time"),
     (
         "page/app/e2e/instruments.e2e.js",
@@ -95,7 +96,7 @@ const SCRIPTS: [(&str, usize, &str); 12] = [
     ("page/app/e2e/robot.js", 1, "between two looks"),
     (
         "page/app/e2e/shots.js",
-        2,
+        3,
         "pictures of the last six seconds",
     ),
     ("page/app/e2e/world.e2e.js", 2, "pictures that would come"),

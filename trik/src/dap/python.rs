@@ -178,10 +178,8 @@ impl<'a> Session<'a> {
 
     /// What debugpy is told of the program.
     fn attachment(&self, folder: &str) -> Value {
-        let mut all = match &self.launch.arguments {
-            Value::Object(all) => Value::Object(all.clone()),
-            _ => json!({}),
-        };
+        let given = self.launch.arguments.as_object();
+        let mut all = Value::Object(given.cloned().unwrap_or_default());
         let program = self.launch.text("program").unwrap_or_default();
         let program = std::path::absolute(program).unwrap_or_else(|_| program.into());
         let own = program.parent().unwrap_or(&program).to_string_lossy();

@@ -82,7 +82,7 @@ fn begin(request: &Request) -> Result<Debugged, Refused> {
     let program = Path::new(request.text("program").unwrap_or_default());
     match request.command == "attach" {
         true => Debugged::attach(&robot, super::python::locale(request)),
-        false => Debugged::launch(program, &robot, super::python::locale(request)),
+        false => Debugged::launch(program, None, &robot, super::python::locale(request)),
     }
     .map_err(why)
 }

@@ -92,7 +92,7 @@ impl Debugged {
         at: &super::target::Target,
         locale: Locale,
     ) -> Result<(Self, String), Error> {
-        let upload = Upload::read(path)?;
+        let upload = Upload::read(path, None)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
         let own = |error| Error::system("a port for debugpy", error);

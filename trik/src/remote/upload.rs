@@ -135,9 +135,9 @@ impl Upload {
 
 /// Why a file cannot be read, without the system's number for it.
 fn unread_file(error: &std::io::Error) -> String {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        _ => error.to_string(),
+    match error.kind() == std::io::ErrorKind::NotFound {
+        true => "there is no such file".to_owned(),
+        false => error.to_string(),
     }
 }
 

@@ -35,7 +35,7 @@ impl Telling {
     pub(super) fn start(world: Arc<dyn World>, folder: PathBuf) -> io::Result<Self> {
         fs::create_dir_all(&folder)?;
         let (end, ended) = channel();
-        let mut told = Told::new(world, folder);
+        let mut told = Teller::new(world, folder);
         let thread = std::thread::Builder::new().name("telling".to_owned());
         let thread = thread.spawn(move || told.run(&ended))?;
         Ok(Self {
@@ -56,7 +56,7 @@ impl Drop for Telling {
 }
 
 /// What was told last.
-struct Told {
+struct Teller {
     world: Arc<dyn World>,
     folder: PathBuf,
     version: Option<u64>,
@@ -64,7 +64,7 @@ struct Told {
     at: Instant,
 }
 
-impl Told {
+impl Teller {
     fn new(world: Arc<dyn World>, folder: PathBuf) -> Self {
         Self {
             world,
@@ -100,7 +100,7 @@ impl Told {
         }
     }
 
-    /// Whoever reads has the file before or this one.
+    /// A reader has the file before or this one.
     fn write(&self, name: &str, text: &str) -> io::Result<()> {
         let begun = self.folder.join("begun");
         fs::write(&begun, text)?;
@@ -144,9 +144,9 @@ mod tests {
     use tempfile::tempdir;
 
     /// A world that is what the test says.
-    struct Said(Mutex<(u64, String, String)>);
+    struct TestWorld(Mutex<(u64, String, String)>);
 
-    impl World for Said {
+    impl World for TestWorld {
         fn scene(&self) -> (u64, String) {
             let said = self.0.lock().unwrap();
             (said.0, said.1.clone())
@@ -168,12 +168,12 @@ mod tests {
     #[test]
     fn a_robot_that_stands_is_told_of_once_in_a_second() {
         let home = tempdir().unwrap();
-        let world = Arc::new(Said(Mutex::new((
+        let world = Arc::new(TestWorld(Mutex::new((
             1,
             "S".to_owned(),
             "{\"t\":1,x".to_owned(),
         ))));
-        let mut told = Told::new(world.clone(), home.path().to_owned());
+        let mut told = Teller::new(world.clone(), home.path().to_owned());
         let read = |name: &str| fs::read_to_string(home.path().join(name)).unwrap();
         let mut now = Instant::now();
         told.tell(now);
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn the_thread_ends_with_its_owner() {
         let home = tempdir().unwrap();
-        let world = Arc::new(Said(Mutex::new((1, "S".to_owned(), String::new()))));
+        let world = Arc::new(TestWorld(Mutex::new((1, "S".to_owned(), String::new()))));
         let telling = Telling::start(world.clone(), folder(home.path())).unwrap();
         assert!(folder(home.path()).is_dir());
         drop(telling);

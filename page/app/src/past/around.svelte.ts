@@ -13,14 +13,14 @@ import type { Item, Mark, Movable, Place, Placed, Scene, Sensor, Shape, WorldSta
 import { countUntil } from './steps';
 
 /** What stood still from a time on. */
-export interface Told {
+export interface SceneText {
   time: number;
   text: string;
 }
 
 /** What a recording has of a world. */
 export interface Recorded {
-  scenes: readonly Told[];
+  scenes: readonly SceneText[];
   places: readonly Line[];
 }
 
