@@ -297,6 +297,18 @@ impl<F: Read + Seek> Reader<F> {
         self.forwards = None;
     }
 
+    /// As `seek_among`, but it gives failures too, those of other nodes among them.
+    pub fn seek_with_failures(&mut self, unix_ns: u64, nodes: &[usize]) {
+        self.seek_among(unix_ns, nodes);
+        self.only.push(FAULTS.to_owned());
+    }
+
+    /// As `seek`, but it gives lines of this story alone, and does not read chunks without any.
+    pub fn seek_lines(&mut self, unix_ns: u64, story: Story) {
+        self.seek(unix_ns);
+        self.only.push(story.topic().to_owned());
+    }
+
     /// The next event, in the order of time.
     ///
     /// # Errors

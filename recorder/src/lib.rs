@@ -32,3 +32,5 @@ mod standard;
 pub mod stream;
 pub mod watch;
 pub mod world;
+
+pub use standard::place_units;

@@ -21,6 +21,7 @@ use journal::standard::robot::{
 use journal::write::{Topic, Writer};
 use pose::{Place, Track};
 use rows::Role;
+pub use rows::place_units;
 use std::collections::HashMap;
 use std::io::{Seek, Write};
 use std::sync::Arc;

@@ -22,6 +22,7 @@ pub mod task;
 pub mod track;
 pub mod trajectory;
 pub mod trial;
+pub mod witness;
 mod words;
 
 pub use dataflow::Dataflow;
@@ -34,4 +35,5 @@ pub use task::{Task, Texts};
 pub use track::Group;
 pub use trajectory::Trajectory;
 pub use trial::{Progress, Trial, judge};
+pub use witness::{Fact, Going, Need, Needs, Seen, Witness, judge_seen, needs};
 pub use words::too_slow;

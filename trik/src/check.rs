@@ -15,6 +15,8 @@ pub(crate) mod original;
 mod platform;
 mod points;
 mod pool;
+mod recorded;
+mod recorded_args;
 mod row;
 mod run;
 mod sandbox_args;

@@ -141,6 +141,8 @@ pub const PASSED_MAX: usize = 1000;
 pub const WORLD_BYTES_MAX: u64 = 32 << 20;
 /// Bytes of a recorded trajectory.
 pub const LOG_BYTES_MAX: u64 = 256 << 20;
+/// Programs of a recording that a person is told of, so that one of them can be chosen.
+pub(crate) const RUNS_TOLD: usize = 12;
 /// Bytes of what a worker says of one run.
 pub const ROW_BYTES_MAX: usize = 4 << 20;
 /// How often what a judged program has left behind is looked for and killed.

@@ -7,7 +7,7 @@ pub(crate) mod cut;
 pub(crate) mod export;
 pub(crate) mod fresh;
 pub(crate) mod plot;
-mod shared;
+pub(crate) mod shared;
 
 use crate::error::Error;
 use crate::output::standard;

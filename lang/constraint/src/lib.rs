@@ -12,6 +12,7 @@
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 
+mod asked;
 mod check;
 mod expand;
 mod explain;
@@ -29,6 +30,7 @@ mod spell;
 mod value;
 mod words;
 
+pub use asked::{Asked, Wish, asked};
 pub use check::Checker;
 pub use explain::{Explained, Explanation, Near, Seen, Standing, Unit};
 pub use lint::{Catalogue, lint};

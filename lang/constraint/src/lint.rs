@@ -9,6 +9,7 @@ pub(crate) mod words;
 use std::collections::{BTreeSet, HashSet};
 
 use super::check::{ON_SUCCESS, SCORE};
+use super::operand::head;
 use super::rules::{Condition, Event, Named, Operand, Path, Rules, Trigger};
 use super::scene::{Missing, Object, ObjectPoint, Scene, Unfit};
 use super::value::Value;
@@ -493,28 +494,13 @@ impl<'a> Lint<'a, '_> {
         }
     }
 
-    /// The object at the beginning of a path, as a run finds it, and how many names are its own.
-    fn head(&mut self, path: &Path) -> Option<(Object, usize)> {
-        let mut name = path.parts.first()?.to_string();
-        let mut head = (self.scene.find(&name)?, 1);
-        for part in path.parts.iter().skip(1) {
-            name.push('.');
-            name.push_str(part);
-            match self.scene.find(&name) {
-                Some(longer) => head = (longer, head.1 + 1),
-                None => break,
-            }
-        }
-        Some(head)
-    }
-
     /// What stands at the end of a path; what is wrong with it is told.
     fn follow(&mut self, path: &Path) -> Followed {
         if path.parts.is_empty() {
             // The reader has told it.
             return Followed::Nowhere;
         }
-        let Some((object, own)) = self.head(path) else {
+        let Some((object, own)) = head(self.scene, path) else {
             let name = &path.parts[0];
             let known = self.names.clone();
             let words = said::no_object(name);

@@ -25,6 +25,21 @@ pub(super) struct Context<'a> {
     pub complaints: Complaints,
 }
 
+/// The object at the beginning of a path in a scene, and how many names are its own: as many as there are objects for.
+pub(super) fn head<S: Scene + ?Sized>(scene: &mut S, path: &Path) -> Option<(Object, usize)> {
+    let mut name = path.parts.first()?.to_string();
+    let mut head = (scene.find(&name)?, 1);
+    for part in path.parts.iter().skip(1) {
+        name.push('.');
+        name.push_str(part);
+        match scene.find(&name) {
+            Some(longer) => head = (longer, head.1 + 1),
+            None => break,
+        }
+    }
+    Some(head)
+}
+
 impl Context<'_> {
     fn complain(&mut self, words: Words) {
         if self.complaints.len() < limits::CONSTRAINT_COMPLAINTS_MAX {
@@ -42,21 +57,12 @@ impl Context<'_> {
         Some(object)
     }
 
-    /// The object at the beginning of a path, and how many names are its own: as many as there are objects for.
+    /// The same, remembered.
     pub fn head(&mut self, path: &Path) -> Option<(Object, usize)> {
         if let Some(found) = self.found[path.slot] {
             return Some(found);
         }
-        let mut name = path.parts.first()?.to_string();
-        let mut head = (self.scene.find(&name)?, 1);
-        for part in path.parts.iter().skip(1) {
-            name.push('.');
-            name.push_str(part);
-            match self.scene.find(&name) {
-                Some(longer) => head = (longer, head.1 + 1),
-                None => break,
-            }
-        }
+        let head = head(self.scene, path)?;
         self.found[path.slot] = Some(head);
         Some(head)
     }

@@ -1,5 +1,6 @@
 //! Constraints read and checked on a world that a test writes down.
 
+mod asked;
 mod checking;
 mod explain;
 mod facts;

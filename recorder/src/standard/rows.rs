@@ -164,17 +164,23 @@ fn scan(shape: &Shape<'_>) -> Option<Role> {
 
 /// Where a robot is: units are `mm, deg`; without any, those of the node that the controller's own configuration has.
 fn place(shape: &Shape<'_>) -> Option<Role> {
-    let is_place = matches!(shape.names[..], ["x", "y", "heading" | "theta"]);
-    if !is_place {
+    place_units(shape.node, shape.layout).map(|(length, angle)| Role::Place(length, angle))
+}
+
+/// In which units, in m and rad, a node says where a robot is: its first numbers are x, y and the direction. None if it says
+/// something else.
+pub fn place_units(node: &Node, layout: &Layout) -> Option<(f64, f64)> {
+    let Layout::Fields(fields) = layout else {
+        return None;
+    };
+    let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+    if !matches!(names[..], ["x", "y", "heading" | "theta"]) {
         return None;
     }
-    let (node, units) = (shape.node, shape.node.units.as_str());
-    let is_ours = node.path == "odometry" && shape.names[2] == "heading" && units.is_empty();
+    let units = node.units.as_str();
+    let is_ours = node.path == "odometry" && names[2] == "heading" && units.is_empty();
     let units = if is_ours { "mm, deg" } else { units };
     let (length, angle) = units.split_once(',')?;
-    let (length, angle) = (
-        factor(Quantity::Length, length)?,
-        factor(Quantity::Angle, angle)?,
-    );
-    Some(Role::Place(length, angle))
+    let length = factor(Quantity::Length, length)?;
+    Some((length, factor(Quantity::Angle, angle)?))
 }

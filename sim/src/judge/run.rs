@@ -18,7 +18,7 @@ use lang_constraint::{
 use lang_diagram::brick::Brick;
 use lang_diagram::machine::Status;
 use lang_diagram::ports::{Port, Sort};
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use std::time::Duration;
 
 /// How a run ended.
@@ -362,8 +362,18 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// Tells what may be wrong, and goes on.
+    pub fn warn(&mut self, now: u32, all: &[Words]) {
+        self.entries.extend(all.iter().map(|words| Entry {
+            level: Level::Warning,
+            at_ms: u64::from(now),
+            place: String::new(),
+            text: words.in_locale(self.settings.locale).to_owned(),
+        }));
+    }
+
     /// Ends it as failed, for a reason of the judge's own.
-    pub fn fail(&mut self, now: u32, why: lang_text::problem::Words) {
+    pub fn fail(&mut self, now: u32, why: Words) {
         self.entries.push(Entry {
             level: Level::Error,
             at_ms: u64::from(now),

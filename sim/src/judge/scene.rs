@@ -115,6 +115,32 @@ impl SceneObject {
     }
 }
 
+/// What kind of thing an object is, for those who have to know how its facts come about.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Subject {
+    /// A robot by its number, from 0.
+    Robot(usize),
+    /// What is on a port of a robot.
+    Device(usize, Port),
+    /// What every robot has, by its name in rules.
+    Part(usize, &'static str),
+    /// What can be pushed, or drawn by a robot.
+    Moving,
+    /// What nothing changes but rules.
+    Still,
+}
+
+/// What kind of thing it is; nothing for a number that is none.
+pub(super) fn subject(object: Object) -> Option<Subject> {
+    Some(match SceneObject::of(object)? {
+        SceneObject::Robot(robot) => Subject::Robot(robot),
+        SceneObject::Device(robot, port) => Subject::Device(robot, port),
+        SceneObject::Part(robot, part) => Subject::Part(robot, PARTS[part as usize].0),
+        SceneObject::Solid(_) | SceneObject::Trace => Subject::Moving,
+        SceneObject::Wall(_) | SceneObject::Drawn(_) | SceneObject::Region(_) => Subject::Still,
+    })
+}
+
 /// The thing of a name.
 fn named(arena: &Arena, name: &str) -> Option<SceneObject> {
     if let Some(rest) = name.strip_prefix("robot") {

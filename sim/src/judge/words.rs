@@ -62,6 +62,22 @@ pub(super) fn too_long(seconds: f64) -> Words {
     )
 }
 
+/// A run that was seen is longer than the limit of model time.
+pub(super) fn seen_too_long(seconds: f64) -> Words {
+    Words::new(
+        format!("The recorded run is longer than {seconds} s: --time-limit allows more"),
+        format!("Записанный запуск длиннее {seconds} с: --time-limit разрешит больше"),
+    )
+}
+
+/// A rule would change something that nothing has changed while the run was seen.
+pub(super) fn not_changed(rule: &str, text: &str) -> Words {
+    Words::new(
+        format!("{rule} sets {text}: nothing did that while this was recorded"),
+        format!("{rule} задаёт {text}: во время записи этого никто не делал"),
+    )
+}
+
 /// The run takes too much real time.
 pub fn too_slow(seconds: f64) -> Words {
     Words::new(

@@ -4,6 +4,7 @@
 
 use super::grade_args::GradeArgs;
 use super::platform::Platform;
+use super::recorded_args::RecordedArgs;
 use super::sandbox_args::SandboxArgs;
 use crate::{language, limits};
 use clap::Args;
@@ -48,10 +49,14 @@ pub(crate) struct CheckArgs {
     /// What a person does with the gamepad and the keys: lines such as "1.5 pad 1 30 -50", with the time in seconds.
     #[arg(long, value_name = "FILE", conflicts_with = "log")]
     pub gamepad: Option<PathBuf>,
-    /// Judge a recorded trajectory instead of running a program: a file that --trajectory or TRIK Studio has written, by
-    /// the rules of FILE or of --field. May be given several times; a directory means all NAME.json in it.
-    #[arg(long, value_name = "T.json|DIR")]
+    /// Judge a recorded run instead of running a program, by the rules of FILE or of --field: a trajectory that
+    /// --trajectory or TRIK Studio has written, or a recording of a robot, NAME.mcap. May be given several times; a
+    /// directory means all NAME.json and NAME.mcap in it.
+    #[arg(long, value_name = "T.json|T.mcap|DIR")]
     pub log: Vec<PathBuf>,
+    /// Which run of a recording is judged, and by which node.
+    #[command(flatten)]
+    pub recorded: RecordedArgs,
     /// Write all messages as JSON, in the format of TRIK Studio. With several runs here and below: a directory, with a
     /// file for each run.
     #[arg(long, value_name = "OUT.json")]
@@ -161,6 +166,7 @@ impl CheckArgs {
             }
         }
         words.extend(self.sandbox.for_worker());
+        words.extend(self.recorded.for_worker());
         words.extend([
             format!("--time-limit={}", self.time_limit).into(),
             format!("--wall-limit={}", self.wall_limit).into(),

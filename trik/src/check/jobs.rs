@@ -11,6 +11,9 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+/// The endings of records: trajectories, and recordings of robots.
+const RECORDS: &[&str] = &["json", "mcap"];
+
 /// One run to be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Job {
@@ -62,6 +65,11 @@ pub(super) fn shown(path: &Path) -> String {
 /// A path that cannot be read, a directory without solutions or fields, more than the limits allow.
 pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, Error> {
     let fields = fields(args)?;
+    let chooses = args.recorded.from.is_some() || args.recorded.to.is_some();
+    if chooses && args.log.is_empty() {
+        let why = "--from and --to choose a part of a recording, which --log names";
+        return Err(Error::Refused(why.to_owned()));
+    }
     let solutions = match args.log.is_empty() {
         true => solutions(args)?,
         false => return recorded(args, &fields),
@@ -146,7 +154,7 @@ pub(super) fn passed(args: &CheckArgs) -> Passed {
         let endings = if args.log.is_empty() {
             endings(args)
         } else {
-            &["json"]
+            RECORDS
         };
         let walked = walk(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX);
         let told = walked.map_or_else(|_| Vec::new(), |walk| walk.passed.told);
@@ -204,7 +212,7 @@ fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, Er
     };
     let (mut all, mut names) = (Vec::new(), HashSet::new());
     for path in &args.log {
-        let walk = below(path, &["json"], limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)?;
+        let walk = below(path, RECORDS, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)?;
         for (log, name) in walk.found {
             all.extend(fields.iter().map(|field| Job {
                 solution: save.unwrap_or(&log).clone(),

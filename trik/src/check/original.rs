@@ -252,6 +252,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         full_points: None,
         gamepad: None,
         log: Vec::new(),
+        recorded: Default::default(),
         report: args.report,
         trajectory: args.trajectory,
         svg: None,

@@ -6,6 +6,7 @@
 use super::args::CheckArgs;
 use super::explain;
 use super::jobs::{Job, jobs, shown};
+use super::recorded;
 use super::row::Row;
 use super::script::{self, Language, Setup};
 use super::verdict::Verdict;
@@ -171,6 +172,14 @@ fn judged(
         _ => Solution::read(&job.solution, args)?,
     };
     let (mut task, mut strange) = solution.task(job, args)?;
+    if let Some(log) = job.log.as_ref().filter(|log| recorded::is_recording(log)) {
+        let (mut tape, told) = recorded::tape(log, &task, args)?;
+        strange.extend(told);
+        report_phase(Phase::Runs);
+        let outcome = judge::judge_seen(&task, &mut tape, &settings);
+        report_phase(Phase::Ended);
+        return Ok((task, outcome, strange));
+    }
     if let Some(log) = &job.log {
         let text = text(log, limits::LOG_BYTES_MAX, args.language).map_err(line)?;
         let trajectory = Trajectory::read(&text);

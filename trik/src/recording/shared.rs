@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// An open recording.
-pub(super) type Opened = Reader<BufReader<File>>;
+pub(crate) type Opened = Reader<BufReader<File>>;
 
 /// A regular file that the person named.
 fn file(path: &Path) -> Result<File, Error> {
@@ -24,18 +24,18 @@ fn file(path: &Path) -> Result<File, Error> {
 }
 
 /// The recording in it.
-pub(super) fn open(path: &Path) -> Result<Opened, Error> {
+pub(crate) fn open(path: &Path) -> Result<Opened, Error> {
     Reader::open(BufReader::new(file(path)?)).map_err(|why| Error::file(path, why))
 }
 
 /// Whether the name of a file ends so, which says its form; in small letters or capital ones.
-pub(super) fn has_ending(path: &Path, ending: &str) -> bool {
+pub(crate) fn has_ending(path: &Path, ending: &str) -> bool {
     let own = path.extension();
     own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 /// A moment as seconds from the beginning, in ns.
-pub(super) fn moment(text: &str) -> Result<u64, Error> {
+pub(crate) fn moment(text: &str) -> Result<u64, Error> {
     let seconds: Option<f64> = text.parse().ok();
     let fits = |one: &f64| (0.0..=limits::RECORDING_SECONDS_MAX).contains(one);
     match seconds.filter(fits) {
@@ -50,7 +50,7 @@ pub(super) fn moment(text: &str) -> Result<u64, Error> {
 }
 
 /// Seconds with all digits that they have, at least one after the point.
-pub(super) fn seconds(ns: u64) -> String {
+pub(crate) fn seconds(ns: u64) -> String {
     let text = format!("{}.{:09}", ns / 1_000_000_000, ns % 1_000_000_000);
     let end = text.trim_end_matches('0');
     let zero = if end.ends_with('.') { "0" } else { "" };
@@ -58,13 +58,13 @@ pub(super) fn seconds(ns: u64) -> String {
 }
 
 /// Says in a terminal how far a long work is.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     is_shown: bool,
     next: Instant,
 }
 
 impl Progress {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             is_shown: io::stderr().is_terminal(),
             next: Instant::now() + limits::PROGRESS,
@@ -72,7 +72,7 @@ impl Progress {
     }
 
     /// So much of the whole is done.
-    pub(super) fn at(&mut self, done: u64, whole: u64) {
+    pub(crate) fn at(&mut self, done: u64, whole: u64) {
         if !self.is_shown {
             return;
         }
@@ -95,7 +95,7 @@ impl Drop for Progress {
 }
 
 /// A file that is read from its beginning to its end, and says how far it is.
-pub(super) struct Watched {
+pub(crate) struct Watched {
     file: BufReader<File>,
     done: u64,
     whole: u64,
@@ -103,7 +103,7 @@ pub(super) struct Watched {
 }
 
 impl Watched {
-    pub(super) fn open(path: &Path) -> Result<Self, Error> {
+    pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         let file = file(path)?;
         let whole = file.metadata().map_or(0, |there| there.len());
         Ok(Self {

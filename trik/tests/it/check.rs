@@ -5,6 +5,7 @@
 mod class;
 mod jobs;
 mod limits;
+mod recorded;
 mod sandbox;
 mod unsaid;
 

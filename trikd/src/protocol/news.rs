@@ -9,6 +9,24 @@ pub fn started(name: &str) -> String {
     format!("{name} has started")
 }
 
+/// Whether a text says that a program of this name has started.
+pub fn is_started(text: &str, name: &str) -> bool {
+    text.strip_prefix(name)
+        .is_some_and(|rest| rest.starts_with(" has started"))
+}
+
+/// Whether a text is [`End::describe`] of a program of this name.
+pub fn is_end(text: &str, name: &str) -> bool {
+    let ends = [
+        " has ended ",
+        " has failed ",
+        " was killed by ",
+        " was stopped ",
+    ];
+    text.strip_prefix(name)
+        .is_some_and(|rest| ends.iter().any(|end| rest.starts_with(end)))
+}
+
 /// Why a request of a computer that is not paired is refused, after `error: `.
 pub const NOT_PAIRED: &str = "this computer is not paired with the robot: press Enter on the robot within 30 s, then try again";
 /// How it begins when an upload was not kept; other reasons begin with its name in quotes.
