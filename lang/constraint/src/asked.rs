@@ -109,7 +109,11 @@ impl<'a> Walk<'a, '_> {
                         self.add(&path.text, object, &[], Wish::Place);
                     }
                 }
-                other => self.operand(other),
+                other @ (Operand::Constant(_)
+                | Operand::Variable(_)
+                | Operand::TypeOf(_)
+                | Operand::Unary(..)
+                | Operand::Binary(..)) => self.operand(other),
             },
             Operand::Unary(_, one) => self.operand(one),
             Operand::Binary(_, both) => both.iter().for_each(|one| self.operand(one)),

@@ -3,7 +3,7 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 23] = [
+const PAUSES: [(&str, usize, &str); 22] = [
     ("bridge/src/http.rs", 1, "between two looks"),
     ("page/src/server/tests.rs", 1, "between two looks"),
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
@@ -58,7 +58,7 @@ const PAUSES: [(&str, usize, &str); 23] = [
 
 /// Scripts of tests in other languages that pause, how often, and why: those of the page in a browser, and of what is
 /// installed.
-const SCRIPTS: [(&str, usize, &str); 12] = [
+const SCRIPTS: [(&str, usize, &str); 13] = [
     ("cross/board/guest.sh", 1, "between two looks"),
     (
         "cross/install/controller/usr/lib/trikfs/common.sh",
