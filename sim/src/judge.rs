@@ -35,5 +35,4 @@ pub use task::{Task, Texts};
 pub use track::Group;
 pub use trajectory::Trajectory;
 pub use trial::{Progress, Trial, judge};
-pub use witness::{Fact, Going, Need, Needs, Seen, Witness, judge_seen, needs};
 pub use words::too_slow;

@@ -1,7 +1,7 @@
 //! `trik check`: solutions of tasks are run in virtual time and judged by the rules of their worlds.
 //!
 //! Owns what a person or a grader sees: messages, table, lines of JSON, exit codes. Which runs there are is in `jobs`, one
-//! of them in `run`, many of them in `pool` and `worker`; `row` is what is said of one. What a world does and what its
+//! of them in `run` and `staged`, many of them in `pool` and `worker`; `row` is what is said of one. What a world does and what its
 //! rules mean is in crate `sim`.
 
 mod args;
@@ -21,6 +21,7 @@ mod row;
 mod run;
 mod sandbox_args;
 mod script;
+mod staged;
 mod verdict;
 mod walk;
 mod words;
@@ -37,7 +38,7 @@ use lang_text::problem::Locale;
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
-pub(crate) use run::{Ready, Staged, Start, staged};
+pub(crate) use staged::{Ready, Staged, Start, staged};
 use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@
 
 use super::args::CheckArgs;
 use super::explain;
-use super::jobs::{Job, jobs, shown};
+use super::jobs::{Job, shown};
 use super::recorded;
 use super::row::Row;
 use super::script::{self, Language, Setup};
@@ -115,10 +115,10 @@ fn fill(outcome: &Outcome, locale: Locale, row: &mut Row) {
 pub(crate) type Lines = Vec<String>;
 
 /// Why a run cannot be: for people, with places, and for the report, which has none.
-struct Refused {
-    lines: Lines,
-    bare: Lines,
-    verdict: Verdict,
+pub(super) struct Refused {
+    pub(super) lines: Lines,
+    pub(super) bare: Lines,
+    pub(super) verdict: Verdict,
 }
 
 impl From<Lines> for Refused {
@@ -156,7 +156,7 @@ impl Refused {
 }
 
 /// An error as the only line.
-fn line(error: Error) -> Lines {
+pub(super) fn line(error: Error) -> Lines {
     vec![error.to_string()]
 }
 
@@ -176,7 +176,7 @@ fn judged(
         let (mut tape, told) = recorded::tape(log, &task, args)?;
         strange.extend(told);
         report_phase(Phase::Runs);
-        let outcome = judge::judge_seen(&task, &mut tape, &settings);
+        let outcome = judge::witness::judge_seen(&task, &mut tape, &settings);
         report_phase(Phase::Ended);
         return Ok((task, outcome, strange));
     }
@@ -233,7 +233,7 @@ fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines>
     Ok(changed.map(str::to_owned).collect())
 }
 
-fn settings(args: &CheckArgs) -> Result<Settings, Error> {
+pub(super) fn settings(args: &CheckArgs) -> Result<Settings, Error> {
     let answers = match &args.inputs {
         None => Vec::new(),
         Some(path) => text(path, limits::WORLD_BYTES_MAX, args.language)?
@@ -268,17 +268,17 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
 
 /// What is to be judged.
 #[derive(Default)]
-struct Solution {
-    project: Project,
+pub(super) struct Solution {
+    pub(super) project: Project,
     /// The data-flow program that is run instead of a diagram.
-    flow: Option<Flow>,
-    script: Option<(Language, String)>,
+    pub(super) flow: Option<Flow>,
+    pub(super) script: Option<(Language, String)>,
     /// Where the program comes from.
     file: PathBuf,
 }
 
 impl Solution {
-    fn read(path: &Path, args: &CheckArgs) -> Result<Self, Refused> {
+    pub(super) fn read(path: &Path, args: &CheckArgs) -> Result<Self, Refused> {
         if path.extension().is_some_and(|ending| ending == "xml") && path.is_file() {
             return Err(vec![format!(
                 "{}: {}",
@@ -343,7 +343,7 @@ impl Solution {
     }
 
     /// The task that is judged by: of the field, of a given save, or of its own world. A field replaces the whole world.
-    fn task(&mut self, job: &Job, args: &CheckArgs) -> Result<(Task, Lines), Refused> {
+    pub(super) fn task(&mut self, job: &Job, args: &CheckArgs) -> Result<(Task, Lines), Refused> {
         let field = match &job.field {
             None => None,
             Some(path) => Some(text(path, limits::WORLD_BYTES_MAX, args.language).map_err(line)?),
@@ -392,7 +392,11 @@ impl Solution {
     }
 
     /// The diagram, lowered; the task gets the sensors that it needs.
-    fn diagram(&self, task: &mut Task, args: &CheckArgs) -> Result<Rc<Lowered>, Refused> {
+    pub(super) fn diagram(
+        &self,
+        task: &mut Task,
+        args: &CheckArgs,
+    ) -> Result<Rc<Lowered>, Refused> {
         let lowered = lower(&self.project, world(args));
         let lowered =
             lowered.map_err(|problem| Refused::broken(vec![problem.in_locale(args.language)]))?;
@@ -425,7 +429,7 @@ impl Solution {
 }
 
 /// A data-flow program without mistakes.
-fn ready(
+pub(super) fn ready(
     flow: &Flow,
     file: &Path,
     args: &CheckArgs,
@@ -434,83 +438,8 @@ fn ready(
     ready.map_err(|problems| Refused::broken(flow.lines(file, &problems, args.language)))
 }
 
-/// How a program that is debugged begins.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) enum Start {
-    /// It is stopped before its first block.
-    Stopped,
-    /// It runs until something stops it.
-    Running,
-}
-
-/// A program of blocks that is ready to run in its world, for a caller that runs it tick by tick.
-pub(crate) struct Staged {
-    pub file: PathBuf,
-    /// Its main diagram, if that is not the first one.
-    pub diagram: Option<String>,
-    pub program: Ready,
-    /// In which a diagram is lowered.
-    pub world: World,
-    pub task: Task,
-    pub settings: Settings,
-    /// What is strange in the world.
-    pub strange: Lines,
-}
-
-/// A program as people see it, and as it runs.
-pub(crate) enum Ready {
-    /// A diagram of control flow.
-    Diagram(Box<Project>, Rc<Lowered>),
-    /// A data-flow program.
-    Flow(Flow, Rc<lang_dataflow::program::Program>),
-}
-
-/// The only program of the arguments, ready to run.
-///
-/// # Errors
-/// Lines that say why it cannot run: it has no blocks, or it, its world or its rules are broken.
-pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
-    let jobs = jobs(args).map_err(line)?;
-    let [job] = &jobs[..] else {
-        return Err(vec![words::one_to_debug(jobs.len(), args.language)]);
-    };
-    let all = || {
-        let settings = Settings {
-            // A person thinks.
-            longest: Duration::MAX,
-            ..settings(args).map_err(line)?
-        };
-        let mut solution = Solution::read(&job.solution, args)?;
-        if solution.script.is_some() {
-            let why = "only diagrams have blocks to stop at; a program in Python is debugged by its own tools";
-            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
-        }
-        let (mut task, strange) = solution.task(job, args)?;
-        let program = match solution.flow.take() {
-            Some(flow) => {
-                let program = ready(&flow, &job.solution, args)?;
-                Ready::Flow(flow, program)
-            }
-            None => {
-                let program = solution.diagram(&mut task, args)?;
-                Ready::Diagram(Box::new(solution.project), program)
-            }
-        };
-        Ok(Staged {
-            file: job.solution.clone(),
-            diagram: args.diagram.clone(),
-            program,
-            world: world(args),
-            task,
-            settings,
-            strange,
-        })
-    };
-    all().map_err(|refused: Refused| refused.lines)
-}
-
 /// What a diagram finds in a world.
-fn world(args: &CheckArgs) -> World {
+pub(super) fn world(args: &CheckArgs) -> World {
     World::Simulated {
         mailbox: false,
         gamepad: args.gamepad.is_some(),

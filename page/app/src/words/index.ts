@@ -4,7 +4,10 @@ import { en, type Words } from './en';
 import { translator } from './heard';
 import { ru } from './ru';
 
-export const language: 'en' | 'ru' = navigator.language.toLowerCase().startsWith('ru') ? 'ru' : 'en';
+// Tests of single files have no browser.
+const spoken = typeof navigator === 'undefined' ? 'en' : navigator.language;
+
+export const language: 'en' | 'ru' = spoken.toLowerCase().startsWith('ru') ? 'ru' : 'en';
 
 export const words: Words = { en, ru }[language];
 

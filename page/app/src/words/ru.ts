@@ -130,7 +130,10 @@ export const ru: Words = {
       'выполняется {name}; у новой версии должно быть то же имя',
     ],
     ['no diagram runs', 'никакая диаграмма не выполняется'],
-    ['only diagrams are debugged', 'отлаживать можно только диаграммы'],
+    [
+      'only diagrams and programs in JavaScript are debugged so',
+      'так отлаживают только диаграммы и программы на JavaScript',
+    ],
     ['the program has ended', 'программа уже завершилась'],
     ['the program cannot be started', 'программа не запускается'],
     ['it was stopped before it began', 'её остановили до начала'],

@@ -2,7 +2,7 @@
 
 use journal::error::Error;
 use lang_text::problem::Words;
-use sim::judge::Need;
+use sim::judge::witness::Need;
 
 /// A rule asks for what no recording has.
 pub(super) fn simulated(need: &Need) -> Words {
