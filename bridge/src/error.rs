@@ -16,6 +16,8 @@ pub enum Error {
     Tree(recorder::error::Error),
     /// There are no more threads.
     Thread(String),
+    /// Nothing can be made of what a tree has.
+    Message(String),
 }
 
 impl Error {
@@ -23,6 +25,7 @@ impl Error {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Address(..) => Blame::Caller,
+            Self::Message(_) => Blame::Machine,
             Self::Tree(why) => why.blame(),
             Self::Thread(_) => Blame::Machine,
         }
@@ -39,6 +42,7 @@ impl fmt::Display for Error {
                 )
             }
             Self::Tree(why) => write!(f, "{why}"),
+            Self::Message(why) => write!(f, "what the tree has cannot be passed on: {why}"),
             Self::Thread(why) => write!(f, "a thread: {why}"),
         }
     }

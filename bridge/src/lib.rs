@@ -1,10 +1,11 @@
-//! A mounted tree for tools of other people: Prometheus.
+//! A mounted tree for tools of other people: Prometheus and Foxglove.
 //!
 //! What is seen in a tree is `recorder`'s, and what a message is `journal`'s. Here is only what those tools ask for. Knows no
 //! command and no robot; runs on a PC.
 //!
 //! - `follow`: a tree that may go and come back
 //! - `prometheus`, `http`: numbers as a text, and the small server that gives it
+//! - `foxglove`: channels, parameters and services, over WebSocket
 //! - `error`, `limits`
 
 #![forbid(unsafe_code)]
@@ -12,6 +13,7 @@
 
 pub mod error;
 pub mod follow;
+pub mod foxglove;
 pub mod http;
 pub mod limits;
 pub mod prometheus;

@@ -18,3 +18,37 @@ pub const CONNECTIONS_MAX: usize = 8;
 pub const REQUEST_TIME: Duration = Duration::from_secs(5);
 /// Until a tree that has gone is looked for again.
 pub const RETURN_TIME: Duration = Duration::from_secs(1);
+/// Clients of Foxglove at once; a further one is told to come later.
+pub const CLIENTS_MAX: usize = 16;
+/// Until a client has said what it wants: the handshake.
+pub const HANDSHAKE_TIME: Duration = Duration::from_secs(5);
+/// Bytes of a message of a client.
+pub const MESSAGE_BYTES_MAX: usize = 64 << 10;
+/// Things that one message of a client names.
+pub const NAMES_MAX: usize = 8192;
+/// Bytes of a name that a client gives.
+pub const NAME_BYTES_MAX: usize = 1024;
+/// Mistakes of one client after which it is let go.
+pub const MISTAKES_MAX: usize = 1000;
+/// Channels that are told of: those of all nodes, and of messages of other people's types.
+pub const CHANNELS_MAX: usize = 16_384;
+/// Subscriptions of one client.
+pub const SUBSCRIPTIONS_MAX: usize = 16_384;
+/// Bytes of samples that wait for one client; of more the oldest are lost.
+pub const DATA_BYTES_MAX: usize = 4 << 20;
+/// Bytes of all else that waits for one client; one that has more is given up. All types of a large tree fit.
+pub const CONTROL_BYTES_MAX: usize = 32 << 20;
+/// Messages that are handed to a socket at a time, before what comes from it is looked at.
+pub const SENT_AT_ONCE: usize = 256;
+/// Until a client that takes nothing at all is let go.
+pub const STUCK_TIME: Duration = Duration::from_secs(30);
+/// How often a silent client is asked whether it is there.
+pub const PING_TIME: Duration = Duration::from_secs(10);
+/// How often clients are told the time.
+pub const BEAT_TIME: Duration = Duration::from_millis(100);
+/// How often parameters are looked at while anybody wants to hear of changes.
+pub const PARAMETERS_TIME: Duration = Duration::from_secs(1);
+/// Parameters of one robot.
+pub const PARAMETERS_MAX: usize = 4096;
+/// Bytes of one parameter.
+pub const PARAMETER_BYTES_MAX: u64 = 4096;

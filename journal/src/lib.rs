@@ -10,7 +10,7 @@
 //! - `schema`: names and texts of types
 //! - `standard`: the types of other people that are used here
 //! - `node`: one recorded node, its channel, its messages
-//! - `write`, `read`, `mend`: files
+//! - `write`, `read`, `mend`: files; `records`: what is in one that is still made
 //! - `error`, `limits`, `fuzz`
 
 #![forbid(unsafe_code)]
@@ -26,6 +26,7 @@ pub mod limits;
 pub mod mend;
 pub mod node;
 pub mod read;
+pub mod records;
 pub mod schema;
 pub mod standard;
 pub mod write;

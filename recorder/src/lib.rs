@@ -11,6 +11,7 @@
 //! - `file`: the thread that writes them to a disk
 //! - `kept`: the last minutes, as a ring of files
 //! - `stream`: entries as bytes for one client, with its patterns and its rate
+//! - `live`: entries as messages for other forms
 //! - `desk`: the thread that looks, and all who take what it sees
 //! - `pattern`, `error`, `limits`
 
@@ -25,6 +26,7 @@ pub mod error;
 pub mod file;
 pub mod kept;
 pub mod limits;
+pub mod live;
 pub mod nodes;
 pub mod pattern;
 mod pen;

@@ -3,6 +3,7 @@
 //! Owns the run: which tree, when it ends, and what a person is told. What those tools get is known to the crate `bridge`.
 
 pub(crate) mod args;
+mod foxglove;
 
 use crate::error::Error;
 use crate::record::tree;
@@ -16,6 +17,7 @@ use args::{Bridge, PrometheusArgs};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::net::SocketAddr;
 use std::os::fd::AsFd;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The program that looks, with its version.
@@ -28,13 +30,12 @@ const PROGRAM: &str = concat!("trik/", env!("CARGO_PKG_VERSION"));
 pub(crate) fn run(which: &Bridge) -> Result<u8, Refusal> {
     match which {
         Bridge::Prometheus(args) => prometheus(args),
+        Bridge::Foxglove(args) => foxglove::serve(args),
     }
 }
 
 fn prometheus(args: &PrometheusArgs) -> Result<u8, Refusal> {
-    let named = args.robot.as_deref().map(tree_of).transpose()?;
-    let named = named.as_deref().or(args.mountpoint.as_deref());
-    let root = tree(named)?;
+    let root = root(args.robot.as_deref(), args.mountpoint.as_deref())?;
     // Threads inherit what is blocked.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let mut follow = Follow::begin(&root, PROGRAM).map_err(refused)?;
@@ -76,6 +77,12 @@ fn prometheus(args: &PrometheusArgs) -> Result<u8, Refusal> {
         let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];
         let _ = poll(&mut fds, PollTimeout::from(recorder::limits::LOOK_MS));
     }
+}
+
+/// The tree that is meant.
+fn root(robot: Option<&Path>, mountpoint: Option<&Path>) -> Result<PathBuf, Error> {
+    let named = robot.map(tree_of).transpose()?;
+    tree(named.as_deref().or(mountpoint))
 }
 
 /// What cannot be served, for the person.

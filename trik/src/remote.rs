@@ -3,8 +3,9 @@
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
 //! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `relay` lets it in when it connects to a debugger here, `step` gives one order, `fleet` does something with several
 //! robots at once, `output` is where a program's text goes, `person` who
-//! answers its questions, `recorded` fetches recordings.
+//! answers its questions, `recorded` fetches recordings, `bridged` is what bridges ask.
 
+pub(crate) mod bridged;
 pub(crate) mod debugged;
 pub(crate) mod fleet;
 mod link;

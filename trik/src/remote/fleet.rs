@@ -81,14 +81,14 @@ fn each<T: Send>(all: &[Target], work: impl Fn(&Target) -> T + Sync) -> Vec<T> {
 }
 
 /// What a robot answered to a request and a `status` after it.
-struct Answer {
+pub(super) struct Answer {
     infos: Vec<String>,
-    errors: Vec<String>,
+    pub(super) errors: Vec<String>,
     /// None: it does not know the question.
     status: Option<String>,
 }
 
-fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Error> {
+pub(super) fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Error> {
     let mut link = target.connect()?;
     if let Some(request) = request {
         link.ask(&[request]);

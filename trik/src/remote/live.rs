@@ -62,20 +62,26 @@ pub(crate) fn set(args: &SetArgs) -> u8 {
 }
 
 fn ask(args: &SetArgs) -> Result<u8, Error> {
-    let name = args.assignment.split('=').next().unwrap_or_default().trim();
     let target = match &args.robot {
         Some(target) => target.clone(),
         None => the_one()?,
     };
+    let (is_changed, text) = assign(&target, &args.assignment)?;
+    say(&harmless(&text));
+    Ok(u8::from(!is_changed))
+}
+
+/// Assigns a variable; whether it is assigned, and what the robot says of it.
+pub(super) fn assign(target: &Target, assignment: &str) -> Result<(bool, String), Error> {
+    let name = assignment.split('=').next().unwrap_or_default().trim();
     let mut link = target.connect()?;
-    link.ask(&[b"set:", args.assignment.as_bytes()]);
+    link.ask(&[b"set:", assignment.as_bytes()]);
     let deadline = Instant::now() + ms(limits::ANSWER_MS);
     while Instant::now() < deadline {
         match link.next() {
             Some(Message::Info(text) | Message::Error(text)) => {
                 if let Some(is_changed) = news::is_changed(&text, name) {
-                    say(&harmless(&text));
-                    return Ok(u8::from(!is_changed));
+                    return Ok((is_changed, text));
                 }
                 if text == news::NOT_PAIRED {
                     return Err(Error::Robot(text));

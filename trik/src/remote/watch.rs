@@ -108,7 +108,7 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
 }
 
 /// Asks where the program is.
-fn look(link: &mut Link, tag: u64) -> Result<Value, Error> {
+pub(super) fn look(link: &mut Link, tag: u64) -> Result<Value, Error> {
     link.ask(&[format!("debug:{tag} look").as_bytes()]);
     let deadline = Instant::now() + ms(limits::ANSWER_MS);
     while Instant::now() < deadline {

@@ -1,0 +1,294 @@
+//! What clients may read and change of a robot: parameters and services.
+//!
+//! Owns their names, and how a file of a tree is one. Parameters are `NODE/poll_ms`, `NODE/polarity`, `NODE/params/NAME`, and
+//! `diagram/NAME` for variables of the diagram that runs. Programs are the business of code that implements [`Programs`].
+
+use crate::limits::{PARAMETER_BYTES_MAX, PARAMETERS_MAX};
+use recorder::nodes;
+use serde_json::Value;
+use std::fmt;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+/// Services by their names, with the texts that each one takes.
+pub const SERVICES: [(&str, &[&str]); 2] = [("/stop", &[]), ("/run", &["file"])];
+/// Files of a node that are parameters.
+const FILES: [&str; 2] = ["poll_ms", "polarity"];
+/// What names of variables begin with.
+const DIAGRAM: &str = "diagram/";
+
+/// Why something is not done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// There is no parameter with this name.
+    Absent(String),
+    /// It is no number, text or truth.
+    Value(String),
+    /// The tree does not take it: why.
+    Tree(String, String),
+    /// No program is known that does it, or it does not: why.
+    Program(String),
+    /// There is no service with this number.
+    Service(u32),
+    /// The service needs this text.
+    Argument(&'static str),
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absent(name) => write!(f, "{name}: there is no such parameter"),
+            Self::Value(name) => write!(f, "{name}: no number, text or truth"),
+            Self::Tree(name, why) => write!(f, "{name}: {why}"),
+            Self::Program(why) => f.write_str(why),
+            Self::Service(id) => write!(f, "there is no service {id}"),
+            Self::Argument(name) => write!(f, "the service needs '{name}', a text"),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// The programs of a robot, where somebody takes them.
+pub trait Programs: Send + Sync {
+    /// The variables of the diagram that runs; none if none does.
+    fn variables(&self) -> Vec<(String, Value)>;
+
+    /// Assigns one of them.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    fn assign(&self, name: &str, value: &Value) -> Result<(), Refused>;
+
+    /// Runs a program that the robot has.
+    ///
+    /// # Errors
+    /// It has none of this name, or nobody runs programs.
+    fn run(&self, file: &str) -> Result<(), Refused>;
+
+    /// Ends the program that runs.
+    ///
+    /// # Errors
+    /// It goes on.
+    fn stop(&self) -> Result<(), Refused>;
+}
+
+/// A robot with its tree.
+pub struct Robot {
+    root: PathBuf,
+    programs: Option<Box<dyn Programs>>,
+}
+
+impl Robot {
+    /// The one whose tree is there; without programs, if nobody takes any.
+    pub fn new(root: &Path, programs: Option<Box<dyn Programs>>) -> Self {
+        Self {
+            root: root.to_owned(),
+            programs,
+        }
+    }
+
+    /// Paths of the files that are parameters.
+    fn files(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        for node in nodes::find(&self.root) {
+            let directory = self.root.join(&node.path);
+            let files = FILES.iter().map(|file| (*file).to_owned());
+            let params = directory.join("params").read_dir().into_iter().flatten();
+            let params = params
+                .flatten()
+                .filter_map(|one| one.file_name().into_string().ok());
+            let mut params: Vec<String> = params.map(|name| format!("params/{name}")).collect();
+            params.sort();
+            let files = files.filter(|file| is_writable(&directory.join(file)));
+            all.extend(
+                files
+                    .chain(params)
+                    .map(|file| format!("{}/{file}", node.path)),
+            );
+            if all.len() >= PARAMETERS_MAX {
+                all.truncate(PARAMETERS_MAX);
+                break;
+            }
+        }
+        all
+    }
+
+    /// All parameters with their values.
+    pub fn parameters(&self) -> Vec<(String, Option<Value>)> {
+        let files = self.files().into_iter();
+        let mut all: Vec<_> = files
+            .map(|name| {
+                let value = read(&self.root.join(&name), name.contains("/params/"));
+                (name, value.ok())
+            })
+            .collect();
+        let variables = self
+            .programs
+            .iter()
+            .flat_map(|programs| programs.variables());
+        let variables = variables.map(|(name, value)| (format!("{DIAGRAM}{name}"), Some(value)));
+        all.extend(variables.take(PARAMETERS_MAX));
+        all
+    }
+
+    /// Gives a parameter a value.
+    ///
+    /// # Errors
+    /// It is not taken.
+    pub fn set(&self, name: &str, value: &Value) -> Result<(), Refused> {
+        if let Some(variable) = name.strip_prefix(DIAGRAM) {
+            return self.programs()?.assign(variable, value);
+        }
+        // Only what is in the list: a name of a stranger is no path.
+        if !self.files().iter().any(|one| one == name) {
+            return Err(Refused::Absent(name.to_owned()));
+        }
+        let text = match value {
+            Value::Bool(truth) => u8::from(*truth).to_string(),
+            Value::Number(number) => number.to_string(),
+            Value::String(text) => text.clone(),
+            Value::Null | Value::Array(_) | Value::Object(_) => {
+                return Err(Refused::Value(name.to_owned()));
+            }
+        };
+        let file = OpenOptions::new()
+            .write(true)
+            .truncate(true)
+            .open(self.root.join(name));
+        let written = file.and_then(|mut file| file.write_all(format!("{text}\n").as_bytes()));
+        written.map_err(|why| Refused::Tree(name.to_owned(), why.to_string()))
+    }
+
+    /// Does what a service is for.
+    ///
+    /// # Errors
+    /// It cannot be done.
+    pub fn call(&self, service: u32, arguments: &Value) -> Result<(), Refused> {
+        let index = usize::try_from(service)
+            .ok()
+            .and_then(|id| id.checked_sub(1));
+        let (name, _) = index
+            .and_then(|index| SERVICES.get(index))
+            .ok_or(Refused::Service(service))?;
+        if *name == "/stop" {
+            // The motors first: a program may take its time.
+            let rest = std::fs::write(self.root.join("stop"), "1\n");
+            let ended = self
+                .programs
+                .as_ref()
+                .map_or(Ok(()), |programs| programs.stop());
+            rest.map_err(|why| Refused::Tree("stop".to_owned(), why.to_string()))?;
+            return ended;
+        }
+        let file = arguments.get("file").and_then(Value::as_str);
+        self.programs()?.run(file.ok_or(Refused::Argument("file"))?)
+    }
+
+    fn programs(&self) -> Result<&dyn Programs, Refused> {
+        let none = "nobody takes programs for this robot: no trikd of it is known";
+        self.programs
+            .as_deref()
+            .ok_or_else(|| Refused::Program(none.to_owned()))
+    }
+}
+
+fn is_writable(path: &Path) -> bool {
+    path.metadata()
+        .is_ok_and(|about| about.is_file() && about.permissions().mode() & 0o222 != 0)
+}
+
+/// The value in a file: a number, or a text.
+fn read(path: &Path, is_float: bool) -> io::Result<Value> {
+    let mut text = String::new();
+    File::open(path)?
+        .take(PARAMETER_BYTES_MAX)
+        .read_to_string(&mut text)?;
+    let text = text.trim();
+    let whole = text.parse::<i64>().ok().filter(|_| !is_float);
+    let number = || text.parse::<f64>().ok().filter(|number| number.is_finite());
+    Ok(match (whole, number()) {
+        (Some(whole), _) => Value::from(whole),
+        (None, Some(number)) => Value::from(number),
+        (None, None) => Value::from(text),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_value_is_a_number_or_a_text() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x");
+        for (text, is_float, value) in [
+            ("20\n", false, Value::from(20)),
+            ("20\n", true, Value::from(20.0)),
+            ("0.5", false, Value::from(0.5)),
+            ("nan", true, Value::from("nan")),
+            ("normal\n", false, Value::from("normal")),
+        ] {
+            fs::write(&path, text).unwrap();
+            assert_eq!(read(&path, is_float).unwrap(), value);
+        }
+    }
+
+    #[test]
+    fn only_parameters_are_written_and_only_services_called() {
+        let directory = tempfile::tempdir().unwrap();
+        let root = directory.path();
+        fs::create_dir_all(root.join("a/params")).unwrap();
+        for (name, text) in [
+            ("bin_data", "\0\0\0\0"),
+            ("format", "i32 x\n"),
+            ("poll_ms", "20\n"),
+            ("params/gain", "1.5\n"),
+        ] {
+            fs::write(root.join("a").join(name), text).unwrap();
+        }
+        fs::write(root.join("secret"), "x").unwrap();
+        let robot = Robot::new(root, None);
+        assert_eq!(
+            robot.parameters(),
+            [
+                ("a/poll_ms".to_owned(), Some(Value::from(20))),
+                ("a/params/gain".to_owned(), Some(Value::from(1.5))),
+            ]
+        );
+        robot.set("a/params/gain", &Value::from(2)).unwrap();
+        assert_eq!(
+            fs::read_to_string(root.join("a/params/gain")).unwrap(),
+            "2\n"
+        );
+        for name in [
+            "secret",
+            "../secret",
+            "a/../secret",
+            "a/format",
+            "/etc/passwd",
+            "",
+        ] {
+            let refused = robot.set(name, &Value::from(1));
+            assert_eq!(refused, Err(Refused::Absent(name.to_owned())));
+        }
+        let none = robot.set("a/poll_ms", &Value::Null);
+        assert_eq!(none, Err(Refused::Value("a/poll_ms".to_owned())));
+        assert!(matches!(
+            robot.set("diagram/x", &Value::from(1)),
+            Err(Refused::Program(_))
+        ));
+        robot.call(1, &Value::Null).unwrap();
+        assert_eq!(fs::read_to_string(root.join("stop")).unwrap(), "1\n");
+        assert!(matches!(
+            robot.call(2, &Value::Null),
+            Err(Refused::Program(_) | Refused::Argument(_))
+        ));
+        for id in [0, 3, u32::MAX] {
+            assert_eq!(robot.call(id, &Value::Null), Err(Refused::Service(id)));
+        }
+    }
+}
