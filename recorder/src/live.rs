@@ -2,9 +2,9 @@
 //!
 //! Owns that these are the ones that a recording would have, those of other people's tools among them. Knows no clients.
 
+use crate::clock::now_ns;
 use crate::entry::Entry;
 use crate::pen::Pen;
-use crate::watch::now_ns;
 use journal::error::Error;
 use journal::records::{Record, records};
 use journal::write::{Out, Writer};

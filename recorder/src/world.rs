@@ -42,15 +42,18 @@ impl TextFile {
 
     /// What is in it, if that is new. One that is gone, or is too long, says nothing.
     fn news(&mut self) -> Option<Arc<[u8]>> {
-        let found = self.path.metadata().ok()?;
+        let Ok(found) = self.path.metadata() else {
+            (self.stamp, self.text) = (None, None);
+            return None;
+        };
         let stamp = Some((found.ino(), found.mtime(), found.mtime_nsec()));
         if stamp == self.stamp {
             return None;
         }
-        self.stamp = stamp;
         let mut text = Vec::new();
         let file = File::open(&self.path).ok()?;
         let read = file.take(self.most + 1).read_to_end(&mut text).ok()?;
+        self.stamp = stamp;
         let is_whole = (1..=self.most).contains(&u64::try_from(read).unwrap_or(u64::MAX));
         let text: Arc<[u8]> = text.into();
         self.text = is_whole.then_some(text);

@@ -252,7 +252,7 @@ pub(crate) const PLOT_STEPS: usize = 1_120;
 pub(crate) const PLOT_FAULTS_MAX: usize = 1_000;
 /// Gaps within one step of time of such a picture.
 pub(crate) const PLOT_GAPS_MAX: usize = 4;
-/// Size of the black box of a virtual robot, in MiB: ten minutes of its nodes, at some 40 KB/s.
+/// Size of the black box of a virtual robot, in MiB: ten minutes of its nodes and its world, at some 50 KB/s.
 pub const BOX_MIB: u16 = 32;
 /// How often the world around a virtual robot is told to those who record it.
 pub(crate) const TOLD_MS: u64 = 100;

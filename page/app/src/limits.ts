@@ -85,3 +85,7 @@ export const SCENE_ITEMS_MAX = 20_000;
 export const THINGS_MAX = 1000;
 /** Robots of it, and wheels and sensors of each. */
 export const SHAPE_PARTS_MAX = 100;
+/** A question stays for so long at most: a timer of the browser has 31 bits of milliseconds. */
+export const QUESTION_S_MAX = 86_400;
+/** Times, names and the checksum of an attachment of a recording. */
+export const ATTACHED_WORDS_BYTES = 1024;

@@ -334,12 +334,12 @@ impl Tape {
     /// Whether a node says this fact.
     fn says(&self, node: usize, fact: Fact) -> bool {
         self.feeds.iter().any(|(of, feed)| {
-            let is_meant = match (feed, fact) {
-                (Feed::Place(..), Fact::Place)
-                | (Feed::Light(_), Fact::Light)
-                | (Feed::Phrase, Fact::Phrase) => true,
-                (Feed::Port(port, _), Fact::Port(asked)) => *port == asked,
-                (Feed::Place(..) | Feed::Light(_) | Feed::Phrase | Feed::Port(..), _) => false,
+            let is_meant = match fact {
+                Fact::Place => matches!(feed, Feed::Place(..)),
+                Fact::Light => matches!(feed, Feed::Light(_)),
+                Fact::Phrase => matches!(feed, Feed::Phrase),
+                Fact::Port(asked) => matches!(feed, Feed::Port(port, _) if *port == asked),
+                Fact::Simulated => false,
             };
             *of == node && is_meant
         })

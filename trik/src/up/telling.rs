@@ -86,7 +86,16 @@ impl Teller {
     fn tell(&mut self, now: Instant) {
         if self.version != Some(self.world.version()) {
             let (version, scene) = self.world.scene();
-            let written = lean(scene).map_or(Ok(()), |scene| self.write(SCENE, &scene));
+            let written = match lean(scene) {
+                Some(scene) => self.write(SCENE, &scene),
+                // That of another world says nothing of this one.
+                None => fs::remove_file(self.folder.join(SCENE)).or_else(|why| {
+                    match why.kind() == io::ErrorKind::NotFound {
+                        true => Ok(()),
+                        false => Err(why),
+                    }
+                }),
+            };
             self.version = written.is_ok().then_some(version);
         }
         let places = self.world.state();

@@ -3,7 +3,13 @@
 // Owns their frames, chunks and checksums, and where something is wrong. What messages mean is known to who takes them. The
 // live form is read elsewhere, because it comes in pieces and has no chunks.
 
-import { INFLATED_BYTES_MAX, INFLATION_MAX, RECORD_BYTES_MAX, SCENE_BYTES_MAX } from '../limits';
+import {
+  INFLATED_BYTES_MAX,
+  INFLATION_MAX,
+  RECORD_BYTES_MAX,
+  SCENE_BYTES_MAX,
+  ATTACHED_WORDS_BYTES,
+} from '../limits';
 import { unpacked } from './lz4';
 import { sumOf } from './sum';
 import { type RecordingFault, Wrong } from './wrong';
@@ -25,8 +31,6 @@ const MESSAGE = 0x05;
 const CHUNK = 0x06;
 const ATTACHMENT = 0x09;
 const DATA_END = 0x0f;
-/** Times, names and the checksum of an attachment. */
-const ATTACHED_WORDS_BYTES = 1024;
 /** A kind and a length. */
 const HEAD_BYTES = 9;
 

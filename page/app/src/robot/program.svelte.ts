@@ -3,7 +3,7 @@
 // Owns what was heard of them over the control port and of their folder. Knows no sensors and no diagrams.
 
 import { SvelteMap } from 'svelte/reactivity';
-import { PROGRAM_BYTES_MAX } from '../limits';
+import { PROGRAM_BYTES_MAX, QUESTION_S_MAX } from '../limits';
 import type { Link } from '../link/link';
 
 /** A program in the robot's folder. */
@@ -183,9 +183,12 @@ export class Programs {
     clearTimeout(this.#patience);
     this.question = question;
     if (question.seconds === undefined) return;
-    this.#patience = setTimeout(() => {
-      if (this.question?.number === question.number) this.question = undefined;
-    }, question.seconds * 1000);
+    this.#patience = setTimeout(
+      () => {
+        if (this.question?.number === question.number) this.question = undefined;
+      },
+      Math.min(question.seconds, QUESTION_S_MAX) * 1000,
+    );
   }
 
   #say(kind: OutputLine['kind'], text: string): void {

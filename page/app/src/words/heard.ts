@@ -12,7 +12,7 @@ interface Known {
 }
 
 /** Letters of a sentence that are looked at. */
-const LETTERS_MAX = 2000;
+const LETTERS_MAX = 600;
 /** Sentences within sentences: what was said about a program says why. */
 const DEPTH_MAX = 3;
 

@@ -62,7 +62,9 @@ export class Ground implements Around {
   }
 
   #found(nodes: Nodes): Parts | undefined {
-    const key = [...nodes].map(([path, { node }]) => `${path} ${node.format.length}`).join();
+    const key = [...nodes]
+      .map(([path, { node }]) => `${path} ${node.format} ${node.units} ${node.aliases.join(' ')}`)
+      .join();
     if (key === this.#parts?.key) return this.#parts;
     const all = [...nodes.values()].map(({ node }) => node);
     const poses = all.map(poseOf).filter((pose) => pose !== undefined);
