@@ -38,6 +38,9 @@ pub struct Server {
     beat_at: Instant,
 }
 
+/// What a thread does.
+type Work = Box<dyn FnOnce() + Send>;
+
 /// Serves until the process ends; `program` is what serves, with its version.
 ///
 /// # Errors
@@ -59,7 +62,7 @@ pub fn serve(
         robot: Arc::new(robot),
     };
     let looking = served.clone();
-    let threads: [(&str, Box<dyn FnOnce() + Send>); 2] = [
+    let threads: [(&str, Work); 2] = [
         ("foxglove", Box::new(move || accept(&listener, &served))),
         ("parameters", Box::new(move || look(&looking))),
     ];

@@ -13,7 +13,7 @@ use ::bridge::follow::{Change, Follow};
 use ::bridge::foxglove::client::House;
 use ::bridge::foxglove::robot::{self, Robot};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
-use recorder::watch::now_ns;
+use recorder::clock::now_ns;
 use std::net::SocketAddr;
 use std::os::fd::AsFd;
 
