@@ -27,6 +27,8 @@ const OWN: u64 = 1 << 40;
 const ASIDE: Duration = Duration::from_secs(2);
 /// How long the robot may take to tell of an end that debugpy has noticed.
 const AFTER_END: Duration = Duration::from_secs(2);
+/// When motors that do not rest at a stop are asked again to do so.
+const HOLD_AGAIN: Duration = Duration::from_millis(200);
 
 /// Whether a request is about a program in Python.
 pub(super) fn is_meant(request: &Request) -> bool {
@@ -109,8 +111,8 @@ enum Asked {
     Hello,
     /// The beginning of the talk.
     Attach,
-    /// Something that has no further meaning.
-    Aside,
+    /// That motors rest, which it says they do.
+    Hold,
     /// Something that the program does before this is passed on.
     First(Request, Instant),
 }
@@ -126,8 +128,12 @@ struct Session<'a> {
     next: u64,
     /// The editor knows that the program is there.
     is_begun: bool,
-    /// The motors rest for a stop.
+    /// The motors rest for a stop, or are asked to.
     is_held: bool,
+    /// How often they were.
+    stops: u64,
+    /// Since when some of them are known not to.
+    turning: Option<Instant>,
     /// What the program has said went wrong before it could begin.
     errors: Vec<String>,
     /// It has ended.
@@ -149,6 +155,8 @@ impl<'a> Session<'a> {
             next: OWN,
             is_begun: false,
             is_held: false,
+            stops: 0,
+            turning: None,
             errors: Vec::new(),
             is_over: false,
             lost: None,
@@ -240,6 +248,7 @@ impl<'a> Session<'a> {
             self.client.answer(&self.launch, Err(Refused(why)));
             return Ok(Some(false));
         }
+        self.hold_again();
         self.end_late();
         match self.client.next(Duration::ZERO) {
             Incoming::Request(request) => Ok(self.receive(request)),
@@ -299,7 +308,10 @@ impl<'a> Session<'a> {
                 self.client.answer(&self.launch, answer);
                 return (!is_done).then_some(false);
             }
-            Asked::Aside => {}
+            Asked::Hold => {
+                let do_rest = is_done && message["body"]["result"] == "True";
+                self.turning = (!do_rest).then(Instant::now);
+            }
             Asked::First(request, _) => self.adapter.send(&request.whole()),
         }
         None
@@ -311,7 +323,17 @@ impl<'a> Session<'a> {
             return;
         }
         self.is_held = true;
-        self.in_program("_hold()", Asked::Aside);
+        self.stops += 1;
+        self.in_program(&format!("_hold({})", self.stops), Asked::Hold);
+    }
+
+    /// Asks again for the rest of motors that have failed.
+    fn hold_again(&mut self) {
+        let is_due = self.turning.is_some_and(|at| at.elapsed() >= HOLD_AGAIN);
+        if is_due && self.is_held && self.lost.is_none() {
+            self.turning = None;
+            self.in_program(&format!("_hold({})", self.stops), Asked::Hold);
+        }
     }
 
     /// Has the program do something with its robot.
@@ -386,8 +408,9 @@ impl<'a> Session<'a> {
                 self.refuse(&request, "a program in Python cannot be taken back");
             }
             "continue" | "next" | "stepIn" | "stepOut" | "goto" if self.is_held => {
-                self.is_held = false;
-                self.in_program("_go_on()", Asked::First(request, Instant::now()));
+                (self.is_held, self.turning) = (false, None);
+                let what = format!("_go_on({})", self.stops);
+                self.in_program(&what, Asked::First(request, Instant::now()));
             }
             "setExceptionBreakpoints" => self.adapter.send(&exceptions(&request)),
             "configurationDone" => {

@@ -255,38 +255,80 @@ def _stream(path, size):
         time.sleep(0.25)
 
 
+# What motors are told passes here: a debugger stops no thread inside this module, and none may turn a motor while all
+# motors rest for a stop. Who holds it calls nothing in Python but this module, where a debugger could stop a thread.
+_gate = threading.RLock()
+_is_held = False
+# The newest stop that was held and the newest that is over: the debugger may call out of order, in several threads.
+_stop_held = _stop_over = 0
+# What motors do when they go on, by their places.
+_resting = {}
+
+
+def _place(directory):
+    """The place of a motor in the tree, which has the same file at a second name too."""
+    group = directory.partition('/')[0]
+    for port in _ports(group):
+        values = [os.path.join(_ROOT, place, 'value') for place in (directory, '%s/%s' % (group, port))]
+        try:
+            if os.path.samefile(*values):
+                return '%s/%s/' % (group, port)
+        except OSError:
+            pass
+    return directory + '/'
+
+
+def _most(place):
+    is_angle = place.startswith('servos') and _file(place + 'units').text() != '%'
+    return 90 if is_angle else 100
+
+
+def _turn(file, power, end):
+    """Some servos have nothing below the middle, and go as far as they go: to the end, which power motors have not."""
+    try:
+        file.write('%d\n' % power)
+    except OSError as error:
+        if error.errno != errno.ERANGE or not end:
+            raise
+        file.write('0\n' if power < 0 else '%d\n' % end)
+
+
 class Motor:
     def __init__(self, directory, servo):
         self._value, self._servo = directory + '/value', servo
         self._switch = directory + ('/power' if servo else '/brake')
-        self._most, self._told = 100, set()
-        if servo and _file(directory + '/units').text() != '%':
-            self._most = 90
+        self._place, self._told = _place(directory), set()
+        self._most = _most(self._place)
 
     def setPower(self, power, constrain=True):
         power = _whole(power, 'setPower', -self._most, self._most)
         file = _file(self._value, os.O_WRONLY)
-        try:
-            file.write('%d\n' % power)
-        except OSError as error:
-            # Some servos have nothing below the middle: as far as they go.
-            if error.errno != errno.ERANGE or not self._servo:
-                raise
-            file.write('0\n' if power < 0 else '%d\n' % self._most)
+        with _gate:
+            _resting.pop(self._place, None)
+            # A power motor that is told 0 is at rest, whatever stands still.
+            if _is_held and (power or self._servo):
+                _resting[self._place] = power
+            else:
+                _turn(file, power, self._servo and self._most)
 
     def power(self):
         return _file(self._value).number()
 
     def powerOff(self):
-        if self._servo:
-            _file(self._switch, os.O_WRONLY).write('0\n')
-        else:
-            self.setPower(0)
+        file = _file(self._switch if self._servo else self._value, os.O_WRONLY)
+        with _gate:
+            _resting.pop(self._place, None)
+            file.write('0\n')
 
     def brake(self, ms=500):
         if self._servo:
             return self.powerOff()
-        _file(self._switch, os.O_WRONLY).write('1\n')
+        file = _file(self._switch, os.O_WRONLY)
+        with _gate:
+            _resting.pop(self._place, None)
+            # One that rests for a debugger stands still already.
+            if not _is_held:
+                file.write('1\n')
         time.sleep(max(0, _whole(ms, 'brake')) / 1000)
         self.setPower(0)
 
@@ -1002,7 +1044,11 @@ class Brick:
         return _ports('encoders')
 
     def _rest(self):
-        _file('stop', os.O_WRONLY).write('1\n')
+        file = _file('stop', os.O_WRONLY)
+        with _gate:
+            # Nothing turns after a stop of the debugger either.
+            _resting.clear()
+            file.write('1\n')
         if _is_there('display/device'):
             self._display.hide()
 
@@ -1427,7 +1473,6 @@ def _tell_failure():
 
 
 _debugger = None
-_resting = {}
 
 
 def _attach(address):
@@ -1465,33 +1510,60 @@ def _show_failure():
         show()
 
 
-def _hold():
-    """Motors rest because a debugger has stopped all threads; what it calls when it has."""
-    for group, switch in (('motors', 'value'), ('servos', 'power')):
-        for port in _ports(group):
-            place = '%s/%s/' % (group, port)
+def _hold(stop):
+    """Motors rest because a debugger has stopped all threads; what it calls when it has, and again until all rest.
+
+    True: all do. From here on they stay so: what threads tell them counts when they go on. Stops have numbers from 1 on.
+    """
+    global _is_held, _stop_held
+    # Nobody waits long for a thread whose motor does not answer: the others are to rest.
+    is_closed = _gate.acquire(timeout=0.5)
+    try:
+        if stop <= _stop_over:
+            return True
+        _is_held, _stop_held = True, max(stop, _stop_held)
+        return all([_let_rest('%s/%s/' % (group, port)) for group in ('motors', 'servos') for port in _ports(group)]) and is_closed
+    finally:
+        if is_closed:
+            _gate.release()
+
+
+def _let_rest(place):
+    """Whether a motor rests."""
+    is_servo = place.startswith('servos')
+    try:
+        if is_servo and _file(place + 'power').number() != 1:
+            return True
+        told = _file(place + 'value').number()
+        if told or is_servo:
+            _file(place + ('power' if is_servo else 'value'), os.O_WRONLY).write('0\n')
+            # What it was told at rest is newer.
+            _resting.setdefault(place, told)
+        return True
+    except FileNotFoundError:
+        # A port of a servo that measures pulses has no switch.
+        return True
+    except OSError:
+        return False
+
+
+def _go_on(stop):
+    """Motors do again what they did or were told at rest, but for those that somebody else has told something."""
+    global _is_held, _stop_over
+    with _gate:
+        _stop_over = max(stop, _stop_over)
+        if _stop_held > stop:
+            return
+        _is_held = False
+        while _resting:
+            place, told = _resting.popitem()
             try:
-                is_on = group == 'motors' or _file(place + 'power').number() == 1
-                told = _file(place + 'value').number()
-                if is_on and (told or group == 'servos'):
-                    _resting[place] = told
-                    _file(place + switch, os.O_WRONLY).write('0\n')
+                is_servo = place.startswith('servos')
+                is_off = not _file(place + ('power' if is_servo else 'value')).number()
+                if is_off:
+                    _turn(_file(place + 'value', os.O_WRONLY), told, is_servo and _most(place))
             except OSError:
-                # One that has failed is at rest.
                 pass
-
-
-def _go_on():
-    """Motors do again what they did, but for those that were told something in between."""
-    while _resting:
-        place, told = _resting.popitem()
-        try:
-            is_servo = place.startswith('servos')
-            is_off = not _file(place + ('power' if is_servo else 'value')).number()
-            if is_off:
-                _file(place + 'value', os.O_WRONLY).write('%d\n' % told)
-        except OSError:
-            pass
 
 
 def _evaluate(code):

@@ -10,6 +10,7 @@ use needs::Need;
 use serde_json::{Value, json};
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// Line 3 is in a function, line 5 turns a motor, and line 9 never ends.
 const DRIVING: &str = "\
@@ -122,6 +123,48 @@ fn a_program_in_python_stops_at_lines_and_its_motors_rest_there() {
     eventually("a motor at rest", || duty(&robot) == 0);
     let why = editor.bad("stepBack", json!({"threadId": thread}));
     assert!(why.contains("cannot be taken back"), "{why}");
+    editor.end();
+    assert!(robot.rests());
+}
+
+/// Line 8 is between turns of a motor by another thread.
+const TURNING: &str = "\
+import threading
+def turn():
+    while True:
+        script.wait(5)
+        brick.motor(M4).setPower(60)
+threading.Thread(target=turn, daemon=True).start()
+script.wait(300)
+n = 1
+while True:
+    script.wait(10)
+";
+
+#[test]
+fn a_thread_that_tells_a_motor_something_at_a_stop_does_not_turn_it() {
+    let Some((python, robot)) = debugged() else {
+        return;
+    };
+    let (mut editor, launch) = launched(&python, &robot, TURNING, json!({}));
+    editor.event("initialized");
+    editor.good("setBreakpoints", points(&robot, &[8]));
+    editor.good("configurationDone", json!({}));
+    editor.answer(launch);
+    let m4 = || robot.robot.duty(4).expect("a motor");
+    for _ in 0..5 {
+        let stopped = editor.event("stopped");
+        eventually("a motor at rest", || m4() == 0);
+        let end = Instant::now() + Duration::from_millis(500);
+        while Instant::now() < end {
+            assert_eq!(m4(), 0, "it stays at rest");
+        }
+        let thread = json!({"threadId": stopped["threadId"]});
+        editor.good("continue", thread.clone());
+        eventually("a motor that goes on", || m4() != 0);
+        editor.good("pause", thread);
+    }
+    editor.event("stopped");
     editor.end();
     assert!(robot.rests());
 }
