@@ -1228,11 +1228,13 @@ class Threads:
         except SystemExit:
             pass
         except BaseException:
-            # The program ends with the first thread that fails.
-            _show_failure()
-            _tell_failure()
-            sys.stdout.flush()
-            os._exit(1)
+            # The program ends with the first thread that fails, also when nobody can be told.
+            try:
+                _show_failure()
+                _tell_failure()
+                sys.stdout.flush()
+            finally:
+                os._exit(1)
 
     def joinThread(self, name):
         thread = self._threads.get(name)
@@ -1507,7 +1509,11 @@ def _show_failure():
     """A debugger may stop where nobody has caught an exception, before the program ends because of it."""
     show = getattr(_debugger, 'trigger_exception_handler', None)
     if show:
-        show()
+        try:
+            show()
+        except BaseException:
+            # The program fails because of its own exception, and says that one.
+            pass
 
 
 def _hold(stop):
@@ -1608,12 +1614,14 @@ def _main():
     except SystemExit:
         raise
     except BaseException:
-        _show_failure()
-        _tell_failure()
-        if _debugger:
-            # A debugger would stop once more, at the exit.
+        try:
+            _show_failure()
+            _tell_failure()
             sys.stdout.flush()
-            os._exit(1)
+        finally:
+            if _debugger:
+                # A debugger would stop once more, at the exit.
+                os._exit(1)
         sys.exit(1)
     finally:
         sys.stdout.flush()
