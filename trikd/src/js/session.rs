@@ -88,6 +88,9 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
             continue;
         }
         let (news, soon) = orders.news(&shared.debugger);
+        if let Some(text) = orders.warning() {
+            shared.say(|output| output.info(&text));
+        }
         if let Some(state) = news {
             shared.say(|output| output.debug(ALL, &state));
         }

@@ -43,6 +43,10 @@ pub struct Orders {
     /// A stop that was told, and what it was.
     told: Option<Stop>,
     keeps_motors: bool,
+    /// A motor may still move at this stop, although it was told to rest.
+    is_moving: bool,
+    /// What a person is to hear of that, once at each stop.
+    warning: Option<String>,
     /// The state has changed, and all are to hear of it.
     is_news: bool,
 }
@@ -57,6 +61,8 @@ impl Orders {
             stopping: None,
             told: None,
             keeps_motors: false,
+            is_moving: false,
+            warning: None,
             is_news: false,
         }
     }
@@ -98,6 +104,7 @@ impl Orders {
             Order::Motors(shall_rest) => {
                 self.keeps_motors = !shall_rest;
                 if self.keeps_motors {
+                    self.is_moving = false;
                     self.resting.go_on(&self.brick);
                 }
             }
@@ -133,21 +140,39 @@ impl Orders {
     fn go_on(&mut self) {
         self.resting.go_on(&self.brick);
         (self.stopping, self.told) = (None, None);
+        (self.is_moving, self.warning) = (false, None);
+    }
+
+    /// Brings motors to rest, unless somebody wants otherwise.
+    fn hold(&mut self) {
+        if self.keeps_motors {
+            return;
+        }
+        let done = self.resting.hold(&self.brick);
+        let was_moving = std::mem::replace(&mut self.is_moving, done.is_err());
+        if let Err(moving) = done
+            && !was_moving
+        {
+            self.warning = Some(moving.to_string());
+        }
+    }
+
+    /// What a person is to hear of motors.
+    pub fn warning(&mut self) -> Option<String> {
+        self.warning.take()
     }
 
     /// Brings motors to rest while it is stopped, and finds out when everything stands still.
     fn turn(&mut self, debugger: &Debugger) {
         let stop = debugger.state().stop.clone();
         if stop.is_none() || stop == self.told {
-            if stop.is_some() && !self.keeps_motors {
-                self.resting.hold(&self.brick);
+            if stop.is_some() {
+                self.hold();
             }
             return;
         }
         let since = *self.stopping.get_or_insert_with(Instant::now);
-        if !self.keeps_motors {
-            self.resting.hold(&self.brick);
-        }
+        self.hold();
         let is_late = since.elapsed() >= Duration::from_millis(limits::JS_STILL_MS);
         if debugger.is_still() || is_late {
             self.told = stop;
@@ -159,8 +184,9 @@ impl Orders {
     /// What all who debug are to hear, if something is new; and after how long to ask again, if that is soon.
     pub fn news(&mut self, debugger: &Debugger) -> (Option<String>, Option<Duration>) {
         self.turn(debugger);
-        let is_stopping = debugger.state().stop.is_some() && !debugger.is_still();
-        let soon = is_stopping.then(|| Duration::from_millis(limits::JS_LOOK_MS));
+        let is_stopped = debugger.state().stop.is_some();
+        let is_unsettled = is_stopped && (self.is_moving || !debugger.is_still());
+        let soon = is_unsettled.then(|| Duration::from_millis(limits::JS_LOOK_MS));
         let told = std::mem::take(&mut self.is_news).then(|| self.state(debugger));
         (told, soon)
     }
@@ -213,4 +239,41 @@ fn thread(number: u32, seen: &Seen) -> String {
 
 fn object() -> Object {
     Object::new(limits::DEBUG_CHARACTERS_MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Who;
+    use super::super::motors::tests::Robot;
+    use super::*;
+
+    #[test]
+    fn a_motor_that_does_not_rest_is_told_again_until_it_does() {
+        let robot = Robot::new();
+        let mut orders = Orders::new(Brick::answered(robot.clone()));
+        let debugger = Debugger::default();
+        let who = Who {
+            number: 1,
+            name: "main",
+        };
+        debugger.enter(who);
+        debugger.waits(who, true);
+        debugger.begin();
+        robot.fails.set(true);
+        for is_first in [true, false] {
+            let (_, soon) = orders.news(&debugger);
+            assert_eq!(soon, Some(Duration::from_millis(limits::JS_LOOK_MS)));
+            assert_eq!(orders.warning().is_some(), is_first, "told once");
+        }
+        // Who wants motors to turn does not hear of those that do.
+        orders.order(&debugger, 1, "motors keep");
+        assert_eq!(orders.news(&debugger).1, None);
+        orders.order(&debugger, 2, "motors rest");
+        assert!(orders.news(&debugger).1.is_some());
+        robot.fails.set(false);
+        assert_eq!(orders.news(&debugger).1, None);
+        assert_eq!(robot.value("motors/M3/value"), "0");
+        orders.order(&debugger, 3, "continue");
+        assert_eq!(robot.value("motors/M3/value"), "40");
+    }
 }
