@@ -118,21 +118,37 @@ impl Debugger {
     }
 
     fn stop(&self, why: Stop) {
-        self.state().stop.get_or_insert(why);
+        self.stop_in(&mut self.state(), why);
+    }
+
+    /// The flag and its reason change under one lock, so that they never disagree for long.
+    fn stop_in(&self, state: &mut State, why: Stop) {
+        match (&state.stop, &why) {
+            // An error is the end of the program, and tells more than a pause that comes to the same.
+            (None | Some(Stop::Pause), Stop::Error { .. }) | (None, Stop::Pause) => {
+                state.stop = Some(why);
+            }
+            (Some(Stop::Error { .. }), _) | (Some(Stop::Pause), Stop::Pause) => {}
+        }
         self.is_stopped.store(true, Ordering::Relaxed);
     }
 
     fn go_on(&self) {
-        let mut state = self.state();
+        self.go_on_in(&mut self.state());
+    }
+
+    fn go_on_in(&self, state: &mut State) {
         state.stop = None;
         self.is_stopped.store(false, Ordering::Relaxed);
         self.goes_on.notify_all();
     }
 
+    /// Under one lock: a thread that fails meanwhile is held for a debugger or finds none.
     fn detach(&self) {
+        let mut state = self.state();
         self.is_attached.store(false, Ordering::Relaxed);
-        self.state().stops_at_errors = false;
-        self.go_on();
+        state.stops_at_errors = false;
+        self.go_on_in(&mut state);
     }
 
     /// Somebody ends threads: those that are held look whether they are meant.
@@ -197,11 +213,8 @@ impl Debugger {
         }
         let most = frames.len().min(limits::JS_FRAMES);
         self.seen(&mut state, who).frames = frames[..most].to_vec();
-        drop(state);
-        self.stop(Stop::Error {
-            thread: who.number,
-            text: text.to_owned(),
-        });
+        let (thread, text) = (who.number, text.to_owned());
+        self.stop_in(&mut state, Stop::Error { thread, text });
         true
     }
 
@@ -268,6 +281,42 @@ mod tests {
             &debugger.state().stop,
             Some(Stop::Error { thread: 1, text }) if text == "e"
         ));
+    }
+
+    #[test]
+    fn an_error_says_more_than_a_pause_and_another_error_nothing_new() {
+        let debugger = Debugger::default();
+        debugger.enter(MAIN);
+        debugger.begin();
+        debugger.state().stops_at_errors = true;
+        for (text, kept) in [("first", "first"), ("second", "first")] {
+            assert!(debugger.failed(MAIN, text, &[]));
+            debugger.stop(Stop::Pause);
+            assert!(matches!(
+                &debugger.state().stop,
+                Some(Stop::Error { text, .. }) if text == kept
+            ));
+        }
+    }
+
+    #[test]
+    fn no_thread_is_held_by_its_error_when_the_debugger_is_gone() {
+        for _ in 0..200 {
+            let debugger = Debugger::default();
+            debugger.enter(MAIN);
+            debugger.attach();
+            debugger.state().stops_at_errors = true;
+            std::thread::scope(|threads| {
+                threads.spawn(|| {
+                    if debugger.failed(MAIN, "e", &[]) {
+                        debugger.pass(MAIN, || false);
+                    }
+                });
+                debugger.detach();
+            });
+            assert!(debugger.state().stop.is_none());
+            assert!(!debugger.is_stopped.load(Ordering::Relaxed));
+        }
     }
 
     #[test]
