@@ -45,10 +45,10 @@ pub const HAS_ENDED: &str = "the program has ended";
 pub const OVERTAKEN: &str = "it was stopped before it began";
 /// Why a diagram is not debugged from its beginning that could not be started; an error says more.
 pub const NOT_STARTED: &str = "the program cannot be started";
-/// Why a program in a language of text is not debugged.
-pub const ONLY_DIAGRAMS: &str = "only diagrams and programs in JavaScript are debugged so";
+/// Why a program in another language is not debugged like a diagram.
+pub const NO_DEBUGGER: &str = "only diagrams and JavaScript programs have this debugger";
 /// Why an order to a program in JavaScript is not carried out.
-pub const NOT_IN_JAVASCRIPT: &str = "the engine of JavaScript can only be paused and go on, and stop at an error: it has no breakpoints, no steps and shows no variables; let the program print them";
+pub const NOT_IN_JAVASCRIPT: &str = "a JavaScript program can only be paused, continued, and stopped at an error: it has no breakpoints, no steps and shows no variables; let the program print them";
 /// Why a program in another language is not run under debugpy.
 pub const ONLY_PYTHON: &str = "only programs in Python run under debugpy";
 /// Why a request to run a program under debugpy is none.

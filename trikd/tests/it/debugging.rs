@@ -423,7 +423,7 @@ fn other_programs_have_no_debugger() {
         &mut client,
         3,
         "run a.py",
-        "only diagrams and programs in JavaScript are debugged so",
+        "only diagrams and JavaScript programs have this debugger",
     );
     client.send("status");
     let status = client.until("status: ");

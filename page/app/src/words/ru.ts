@@ -131,8 +131,8 @@ export const ru: Words = {
     ],
     ['no diagram runs', 'никакая диаграмма не выполняется'],
     [
-      'only diagrams and programs in JavaScript are debugged so',
-      'так отлаживают только диаграммы и программы на JavaScript',
+      'only diagrams and JavaScript programs have this debugger',
+      'этот отладчик есть только у диаграмм и программ на JavaScript',
     ],
     ['the program has ended', 'программа уже завершилась'],
     ['the program cannot be started', 'программа не запускается'],

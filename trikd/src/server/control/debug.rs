@@ -32,8 +32,8 @@ enum Refusal {
     Order(NoOrder),
     /// There is no such program.
     Program(scripts::Refusal),
-    /// The program is none of blocks.
-    NoDiagram,
+    /// The program is neither of blocks nor in JavaScript.
+    NoDebugger,
     /// The program is none in Python.
     NoPython,
     /// No port, or no name behind it.
@@ -47,7 +47,7 @@ impl Refusal {
             Self::NotPaired
             | Self::Taken(_)
             | Self::Order(_)
-            | Self::NoDiagram
+            | Self::NoDebugger
             | Self::NoPython
             | Self::NoPort => Blame::Client,
             Self::Program(why) => why.blame(),
@@ -62,7 +62,7 @@ impl fmt::Display for Refusal {
             Self::Taken(who) => out.write_str(&news::has_control(*who)),
             Self::Order(why) => write!(out, "{why}"),
             Self::Program(why) => write!(out, "{why}"),
-            Self::NoDiagram => out.write_str(news::ONLY_DIAGRAMS),
+            Self::NoDebugger => out.write_str(news::NO_DEBUGGER),
             Self::NoPython => out.write_str(news::ONLY_PYTHON),
             Self::NoPort => out.write_str(news::NO_PORT),
         }
@@ -102,7 +102,7 @@ impl Session {
         let found = scripts::find(&self.control.scripts, name.as_bytes());
         let path = found.map_err(Refusal::Program)?;
         if !Language::of(&path).has_debugger() {
-            return Err(Refusal::NoDiagram);
+            return Err(Refusal::NoDebugger);
         }
         self.command(Command::Debug(asked, Wish::Run(path))).await;
         Ok(())
