@@ -393,13 +393,15 @@ impl<'a> Session<'a> {
     fn receive(&mut self, request: Request) -> Option<bool> {
         match request.command.as_str() {
             "disconnect" => {
-                // The program and its motors first: debugpy would let it drive on.
-                self.robot.end();
+                // The program and its motors first: debugpy would let it drive on. After its end another one may run.
+                self.robot.close();
                 self.client.answer(&request, Ok(Value::Null));
                 return Some(true);
             }
             "terminate" => {
-                self.robot.end();
+                if !self.is_told {
+                    self.robot.end();
+                }
                 self.client.answer(&request, Ok(Value::Null));
                 self.tell_end(0);
             }

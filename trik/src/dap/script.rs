@@ -241,7 +241,10 @@ impl Session<'_> {
                 return Ok(true);
             }
             "terminate" => {
-                self.robot.end();
+                // After its end another one may run.
+                if !self.is_over {
+                    self.robot.end();
+                }
                 self.client.answer(request, Ok(Value::Null));
                 self.tell_end(0);
             }

@@ -356,7 +356,12 @@ impl Target for Debugged {
     }
 
     fn end(&mut self) {
-        self.link.ask(&[b"stop"]);
+        // Its end may have come just now; what runs after it is another program, perhaps of somebody else.
+        let _ = self.link.turn(Duration::ZERO, None, true);
+        let _ = self.take();
+        if !self.is_gone {
+            self.link.ask(&[b"stop"]);
+        }
         // The motors are at rest when this is answered; who does not answer has lost its connection, which is told.
         let _ = self.ask("leave");
         self.is_gone = true;

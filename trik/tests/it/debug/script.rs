@@ -138,6 +138,28 @@ fn an_error_of_javascript_that_nobody_catches_stops_with_its_calls() {
 }
 
 #[test]
+fn what_runs_after_a_program_in_javascript_is_not_ended_with_its_debugger() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    for last in ["terminate", "disconnect"] {
+        let mut editor = begun(&robot, "launch", "print('done');\n", json!({}));
+        editor.good("configurationDone", json!({}));
+        editor.event("terminated");
+        let other = robot.spawn("other.js", DRIVING);
+        eventually("a robot that drives", || duty(&robot) != 0);
+        editor.good(last, json!({}));
+        editor.end();
+        let status = robot.robot.home.run(&["status", "--robot", robot.ip()]);
+        let status = status.good();
+        assert!(status.contains("other.js ("), "{last}: {status}");
+        assert_ne!(duty(&robot), 0, "{last}");
+        drop(other);
+        robot.robot.home.run(&["stop", "--robot", robot.ip()]);
+    }
+}
+
+#[test]
 fn a_program_in_javascript_that_runs_is_joined_and_let_go() {
     let Some(robot) = Reachable::new() else {
         return;
