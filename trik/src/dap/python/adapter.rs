@@ -25,10 +25,15 @@ pub(super) struct Adapter {
     from: Receiver<Value>,
 }
 
+/// Modules of the current directory are not found by it: a file json.py beside a program would run on this computer. Pythons
+/// before 3.11 do not know the variable.
+const SAFE: (&str, &str) = ("PYTHONSAFEPATH", "1");
+
 /// Whether this Python has debugpy, and what to type if it has not.
 fn must_have(python: &str) -> Result<(), Refused> {
     let asked = Command::new(python)
         .args(["-c", "import debugpy"])
+        .env(SAFE.0, SAFE.1)
         .stdin(Stdio::null())
         .output();
     match asked {
@@ -52,6 +57,7 @@ impl Adapter {
         let no = |why: std::io::Error| Refused::new(format!("debugpy cannot be started: {why}"));
         let mut process = Command::new(python)
             .args(["-m", "debugpy.adapter"])
+            .env(SAFE.0, SAFE.1)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
