@@ -28,6 +28,16 @@ impl Request {
         })
     }
 
+    /// One that nobody has sent.
+    #[cfg(test)]
+    pub fn of(command: &str, arguments: Value) -> Self {
+        Self {
+            seq: 1,
+            command: command.to_owned(),
+            arguments,
+        }
+    }
+
     /// An argument that is a text.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.arguments.get(name)?.as_str()

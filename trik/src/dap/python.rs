@@ -226,6 +226,7 @@ impl<'a> Session<'a> {
 
     /// Hears each of the three once; whether the talk is over, and was good.
     fn turn(&mut self) -> Result<Option<bool>, Error> {
+        let mut wait = Duration::ZERO;
         match self.adapter.next(TURN) {
             AdapterSays::Message(message) => {
                 if let Some(is_good) = self.hear(message) {
@@ -233,7 +234,8 @@ impl<'a> Session<'a> {
                 }
             }
             AdapterSays::Nothing => {}
-            AdapterSays::End if self.is_told => {}
+            // It says so at once, again and again.
+            AdapterSays::End if self.is_told => wait = TURN,
             AdapterSays::End => {
                 self.say("important", "trik dap: debugpy has ended");
                 self.robot.end();
@@ -250,7 +252,7 @@ impl<'a> Session<'a> {
         }
         self.hold_again();
         self.end_late();
-        match self.client.next(Duration::ZERO) {
+        match self.client.next(wait) {
             Incoming::Request(request) => Ok(self.receive(request)),
             Incoming::Nothing => Ok(None),
             Incoming::End => Ok(Some(true)),
@@ -282,6 +284,13 @@ impl<'a> Session<'a> {
             Some("stopped") => {
                 self.client.pass(message);
                 self.hold();
+            }
+            // However it came to that; after a request of the editor motors go on already.
+            Some("continued") => {
+                self.client.pass(message);
+                if std::mem::take(&mut self.is_held) {
+                    self.in_program("_go_on()", Asked::Aside);
+                }
             }
             // The robot knows more of the end.
             Some("exited") => {}
@@ -319,7 +328,7 @@ impl<'a> Session<'a> {
 
     /// Motors rest while all threads are stopped, unless the editor has asked otherwise.
     fn hold(&mut self) {
-        if self.launch.text("motors") == Some("keep") || self.is_held {
+        if self.launch.text("motors") == Some("keep") {
             return;
         }
         self.is_held = true;
@@ -456,7 +465,8 @@ fn changed(can: &Value) -> Value {
 /// An editor that knows the filter of programs of blocks alone means errors that nobody catches.
 fn exceptions(request: &Request) -> Value {
     let mut all = request.whole();
-    if let Some(filters) = all["arguments"]["filters"].as_array_mut() {
+    let filters = all.pointer_mut("/arguments/filters");
+    if let Some(filters) = filters.and_then(Value::as_array_mut) {
         for filter in filters {
             if filter == "errors" {
                 *filter = json!("uncaught");
@@ -471,4 +481,32 @@ fn ended_well(launch: &Request, text: &str) -> bool {
     let program = launch.text("program").map(Path::new);
     let name = program.and_then(Path::file_name).unwrap_or_default();
     news::ended(text, &name.to_string_lossy()) == Some(End::Well)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(arguments: Value) -> Request {
+        Request::of("setExceptionBreakpoints", arguments)
+    }
+
+    #[test]
+    fn the_filter_of_blocks_means_errors_that_nobody_catches() {
+        let all = exceptions(&request(json!({"filters": ["errors", "raised", 3]})));
+        assert_eq!(
+            all["arguments"]["filters"],
+            json!(["uncaught", "raised", 3])
+        );
+        for rubbish in [
+            json!(null),
+            json!(7),
+            json!(["errors"]),
+            json!({"filters": "errors"}),
+            json!({"filters": {"errors": 1}}),
+        ] {
+            let all = exceptions(&request(rubbish.clone()));
+            assert_eq!(all["arguments"], rubbish);
+        }
+    }
 }
