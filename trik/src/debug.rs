@@ -17,7 +17,8 @@ use crate::check::{CheckArgs, Ready, Staged, Start, model_seconds, staged};
 use crate::error::Error;
 use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
-use crate::remote::{self, debugged::Debugged};
+use crate::remote;
+use crate::remote::debugged::{Debugged, Runs};
 use clap::{Args, FromArgMatches};
 use lang_diagram::debug::order::Order;
 use lang_text::problem::Locale;
@@ -146,7 +147,7 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
     };
     let begun = match args.attach {
         false => Debugged::launch(&args.file, diagram, robot, args.world.language),
-        true => Debugged::attach(robot, args.world.language),
+        true => Debugged::attach(robot, Runs::Blocks, args.world.language),
     };
     let mut target = begun.map_err(unreachable)?;
     if args.attach {

@@ -16,7 +16,7 @@ use crate::diagrams::save::{self, must};
 use crate::error::Error;
 use crate::language;
 use crate::refusal::Refusal;
-use crate::remote::debugged::Debugged;
+use crate::remote::debugged::{Debugged, Runs};
 use crate::remote::target::{Target as Place, target as place, the_one};
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
@@ -164,7 +164,7 @@ impl Launch {
             }
         };
         let begun = match self.is_joining {
-            true => Debugged::attach(robot, self.locale()),
+            true => Debugged::attach(robot, Runs::Blocks, self.locale()),
             false => Debugged::launch(&self.program, self.diagram(), robot, self.locale()),
         };
         let mut target = match begun {

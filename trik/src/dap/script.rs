@@ -7,7 +7,7 @@ use super::client::{Client, Incoming, Refused, Request};
 use super::greeting::capabilities;
 use crate::debug::target::{Channel, Event, Target, why_not};
 use crate::error::Error;
-use crate::remote::debugged::Debugged;
+use crate::remote::debugged::{Debugged, Runs};
 use crate::remote::target::{target as place, the_one};
 use lang_diagram::debug::order::Order;
 use serde_json::{Value, json};
@@ -47,13 +47,13 @@ pub(super) fn is_meant(request: &Request) -> bool {
 /// Debugs until the talk is over, or false: it could not begin, which is told.
 pub(super) fn serve(request: &Request, client: &mut Client) -> bool {
     match begin(request) {
-        Ok(robot) => {
+        Ok(mut robot) => {
             client.answer(request, Ok(Value::Null));
             let changed = changed();
             client.event("capabilities", json!({ "capabilities": changed }));
             Session {
                 client,
-                robot,
+                robot: &mut robot,
                 launch: request.clone(),
                 told: Value::Null,
                 is_configured: false,
@@ -81,7 +81,7 @@ fn begin(request: &Request) -> Result<Debugged, Refused> {
     let robot = robot.map_err(why)?;
     let program = Path::new(request.text("program").unwrap_or_default());
     match request.command == "attach" {
-        true => Debugged::attach(&robot, super::python::locale(request)),
+        true => Debugged::attach(&robot, Runs::JavaScript, super::python::locale(request)),
         false => Debugged::launch(program, None, &robot, super::python::locale(request)),
     }
     .map_err(why)
@@ -109,7 +109,7 @@ fn changed() -> Value {
 
 struct Session<'a> {
     client: &'a mut Client,
-    robot: Debugged,
+    robot: &'a mut dyn Target,
     launch: Request,
     /// Where the program is, as it was told last.
     told: Value,
@@ -150,7 +150,7 @@ impl Session<'_> {
     fn order(&mut self, order: &Order) -> Result<Result<(), Refused>, Error> {
         let answer = self.robot.order(order)?;
         if let Some(told) = answer.get("program") {
-            self.told = told.clone();
+            self.learn(told.clone());
         }
         Ok(why_not(&answer).map_or(Ok(()), |why| Err(Refused(why))))
     }
@@ -162,6 +162,8 @@ impl Session<'_> {
                     if self.receive(&request)? {
                         return Ok(());
                     }
+                    // The answer may have told of a stop that no report tells any more.
+                    self.tell_stop();
                 }
                 Incoming::Nothing => {}
                 Incoming::End => return Ok(()),
@@ -182,14 +184,26 @@ impl Session<'_> {
                 self.say("stderr", &text);
             }
             Event::Report(told) => {
-                let was = self.told["stop"].take();
-                self.told = told;
-                if self.is_configured && self.told["state"] == "stopped" && self.told["stop"] != was
-                {
-                    self.stopped();
-                }
+                self.learn(told);
+                self.tell_stop();
             }
             Event::Over(_) => self.tell_end(u8::from(self.had_error)),
+        }
+    }
+
+    /// Where the program is; what is no state of one is none.
+    fn learn(&mut self, told: Value) {
+        if told.get("state").is_some() {
+            self.told = told;
+            self.is_stop_told &= self.told["state"] == "stopped";
+        }
+    }
+
+    /// Tells a stop that the editor does not know, whichever way it was heard of.
+    fn tell_stop(&mut self) {
+        let is_stopped = self.told["state"] == "stopped" && !self.is_over;
+        if is_stopped && self.is_configured && !self.is_stop_told {
+            self.stopped();
         }
     }
 
@@ -267,16 +281,13 @@ impl Session<'_> {
                 return self.start();
             }
             "continue" => {
-                self.is_stop_told = false;
                 let done = self.order(&Order::Continue)?;
+                // A stop that the answer tells of is the next one.
+                self.is_stop_told &= done.is_err();
                 done.map(|()| json!({"allThreadsContinued": true}))
             }
             "pause" => {
                 let done = self.order(&Order::Pause)?;
-                // A stop that is there at once has no news.
-                if self.told["state"] == "stopped" && !self.is_stop_told {
-                    self.stopped();
-                }
                 done.map(|()| Value::Null)
             }
             "setExceptionBreakpoints" => {
@@ -363,7 +374,7 @@ impl Session<'_> {
                     name => name,
                 };
                 json!({
-                    "id": id * FRAMES + index,
+                    "id": id.saturating_mul(FRAMES).saturating_add(index),
                     "name": name,
                     "line": call["line"],
                     "column": call["column"],
@@ -372,5 +383,129 @@ impl Session<'_> {
             })
             .collect();
         json!({"stackFrames": frames, "totalFrames": calls.len()})
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::debug::target::{Changed, Written};
+    use lang_text::problem::Words;
+    use std::io::{self, Write};
+    use std::sync::{Arc, Mutex};
+
+    /// A robot that answers with these, one after the other, and has no news.
+    struct Robot(Vec<Value>);
+
+    impl Target for Robot {
+        fn order(&mut self, _: &Order) -> Result<Value, Error> {
+            Ok(self.0.remove(0))
+        }
+
+        fn turn(&mut self, _: Duration) -> Result<Vec<Event>, Error> {
+            Ok(Vec::new())
+        }
+
+        fn change(&mut self, _: &Path, _: Option<&str>, _: Written<'_>) -> Result<Changed, Error> {
+            Ok(Changed::Wrong(String::new()))
+        }
+
+        fn end(&mut self) {}
+
+        fn close(&mut self) {}
+
+        fn keeps_past(&self) -> bool {
+            false
+        }
+
+        fn scene(&self, _: u64) -> Option<Words> {
+            None
+        }
+    }
+
+    /// What an editor is told.
+    #[derive(Clone, Default)]
+    struct Told(Arc<Mutex<Vec<u8>>>);
+
+    impl Write for Told {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.lock().expect("nobody fails").extend(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Told {
+        fn stops(&self) -> usize {
+            let told = self.0.lock().expect("nobody fails");
+            let told = String::from_utf8_lossy(&told);
+            told.matches("\"stopped\"").count()
+        }
+    }
+
+    /// How a session that is configured takes these requests, each with an answer of the robot, and then a report.
+    fn stops(requests: &[(&str, Value, Value)], report: Value) -> usize {
+        let answers = requests.iter().map(|(_, _, answer)| answer.clone());
+        let mut robot = Robot(answers.collect());
+        let told = Told::default();
+        let mut client = Client::new(io::empty(), Box::new(told.clone()));
+        let mut session = Session {
+            client: &mut client,
+            robot: &mut robot,
+            launch: Request::of("launch", json!({"program": "x.js"})),
+            told: Value::Null,
+            is_configured: true,
+            is_stop_told: false,
+            is_over: false,
+            had_error: false,
+        };
+        for (command, arguments, _) in requests {
+            let request = Request::of(command, arguments.clone());
+            assert!(!session.receive(&request).expect("a robot"));
+            session.tell_stop();
+        }
+        session.hear(Event::Report(report));
+        told.stops()
+    }
+
+    fn told(state: &str) -> Value {
+        json!({"done": true, "program": {"state": state, "stop": {"text": "Line 4: no"}}})
+    }
+
+    #[test]
+    fn a_stop_is_told_once_whichever_way_it_comes() {
+        let report = json!({"state": "stopped", "stop": {"text": "Line 4: no"}});
+        let request = |command, answer| (command, json!({"threadId": 1}), told(answer));
+        // By the answer to some order alone, whose reports are forgotten.
+        let look = [request("stackTrace", "stopped")];
+        assert_eq!(stops(&look, report.clone()), 1);
+        // The same error again, at once.
+        let again = [request("pause", "stopped"), request("continue", "stopped")];
+        assert_eq!(stops(&again, report.clone()), 2);
+        let later = [request("pause", "stopped"), request("continue", "running")];
+        assert_eq!(stops(&later, report), 2);
+    }
+
+    #[test]
+    fn rubbish_of_robots_and_clients_is_no_end() {
+        for rubbish in [
+            json!(null),
+            json!(7),
+            json!([1]),
+            json!("stopped"),
+            json!({"state": 1, "stop": 2, "threads": 3}),
+            json!({"state": "running", "threads": [7, {"number": u64::MAX, "frames": [1, {"line": []}]}]}),
+        ] {
+            let answer = json!({"done": true, "program": rubbish});
+            let all = [
+                ("stackTrace", json!({"threadId": u64::MAX}), answer.clone()),
+                ("setExceptionBreakpoints", json!(7), answer.clone()),
+                ("pause", json!([]), answer.clone()),
+            ];
+            assert_eq!(stops(&all, rubbish), 0);
+        }
     }
 }

@@ -30,6 +30,34 @@ enum Begun {
     Elsewhere,
 }
 
+/// What is expected to run where somebody joins.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Runs {
+    /// A program of blocks.
+    Blocks,
+    /// A program in JavaScript.
+    JavaScript,
+    /// Whatever can be debugged.
+    Any,
+}
+
+impl Runs {
+    /// Why a program that tells this of itself is not joined.
+    fn misfit(self, program: &Value) -> Option<&'static str> {
+        // Programs of blocks tell no language.
+        let is_javascript = program.get("language").and_then(Value::as_str) == Some("JavaScript");
+        match (self, is_javascript) {
+            (Self::Blocks, true) => {
+                Some("a program in JavaScript runs there: say its file NAME.js to join it")
+            }
+            (Self::JavaScript, false) => Some(
+                "no program in JavaScript runs there: say the file of the program that runs to join it",
+            ),
+            (Self::Any, _) | (Self::Blocks, false) | (Self::JavaScript, true) => None,
+        }
+    }
+}
+
 /// A diagram on a robot.
 pub(crate) struct Debugged {
     link: Link,
@@ -70,12 +98,22 @@ impl Debugged {
         Ok(debugged)
     }
 
-    /// Joins the diagram that runs on a robot.
+    /// Joins the program that runs on a robot.
     ///
     /// # Errors
-    /// A sentence: the robot cannot be reached, no diagram runs there, or somebody else is in control.
-    pub(crate) fn attach(at: &super::target::Target, locale: Locale) -> Result<Self, Error> {
+    /// A sentence: the robot cannot be reached, no such program runs there, or somebody else is in control.
+    pub(crate) fn attach(
+        at: &super::target::Target,
+        runs: Runs,
+        locale: Locale,
+    ) -> Result<Self, Error> {
         let mut debugged = Self::over(at.connect()?, Begun::Elsewhere, locale);
+        // Before a diagram is stopped for nothing.
+        let seen = debugged.must(&Order::Look.to_string())?;
+        if let Some(why) = seen.get("program").and_then(|program| runs.misfit(program)) {
+            return Err(Error::Robot(format!("{}: {why}", debugged.link.name())));
+        }
+        debugged.events.clear();
         let answer = debugged.must(&Order::Attach.to_string())?;
         if let Some(program) = answer.get("program") {
             debugged.events.push_back(Event::Report(program.clone()));

@@ -3,7 +3,7 @@
 //! Owns how a program is left between two commands: stopped, with its motors at rest, under nobody's control, so that the
 //! next command gets it. What an order does is known in `lang_diagram::debug`.
 
-use super::debugged::Debugged;
+use super::debugged::{Debugged, Runs};
 use super::output::say;
 use super::target::{Target, target, the_one};
 use crate::debug::listing::{Listing, listing_of};
@@ -187,8 +187,8 @@ fn ordered(robot: &mut Debugged, order: &Order) -> Result<Reply, Error> {
 
 fn attached(robot: Option<&Target>, locale: Locale) -> Result<Debugged, Refusal> {
     let begun = match robot {
-        Some(robot) => Debugged::attach(robot, locale),
-        None => the_one().and_then(|robot| Debugged::attach(&robot, locale)),
+        Some(robot) => Debugged::attach(robot, Runs::Any, locale),
+        None => the_one().and_then(|robot| Debugged::attach(&robot, Runs::Any, locale)),
     };
     begun.map_err(unreachable)
 }

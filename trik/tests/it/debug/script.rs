@@ -1,5 +1,6 @@
 //! Programs in JavaScript in the debugger of an editor: what their engine can, and words for what it cannot.
 
+use super::counting_by;
 use super::dap::Editor;
 use crate::programs::Reachable;
 use harness::eventually;
@@ -138,6 +139,38 @@ fn an_error_of_javascript_that_nobody_catches_stops_with_its_calls() {
 }
 
 #[test]
+fn a_program_in_another_language_is_not_joined_and_runs_on() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    let home = &robot.robot.home.0;
+    let (diagram, script) = (
+        home.file("count.qrs", counting_by("n = n + 1\nwait(600000)")),
+        home.file("drive.js", DRIVING),
+    );
+    for (runs, joined, part) in [
+        (&script, &diagram, "a program in JavaScript runs there"),
+        (&diagram, &script, "no program in JavaScript runs there"),
+    ] {
+        let running = robot.spawn_file(runs.to_str().expect("UTF-8"));
+        let name = runs.file_name().expect("a name").to_string_lossy();
+        let status = || {
+            let status = robot.robot.home.run(&["status", "--robot", robot.ip()]);
+            status.good().contains(&format!("{name} ("))
+        };
+        eventually("a program", status);
+        let mut editor = Editor::start();
+        editor.good("initialize", json!({"adapterID": "trik"}));
+        let arguments = json!({"program": joined, "robot": robot.ip()});
+        let why = editor.bad("attach", arguments);
+        assert!(why.contains(part), "{why}");
+        drop(editor);
+        assert!(status());
+        drop(running);
+    }
+}
+
+#[test]
 fn what_runs_after_a_program_in_javascript_is_not_ended_with_its_debugger() {
     let Some(robot) = Reachable::new() else {
         return;
@@ -148,7 +181,9 @@ fn what_runs_after_a_program_in_javascript_is_not_ended_with_its_debugger() {
         editor.event("terminated");
         let other = robot.spawn("other.js", DRIVING);
         eventually("a robot that drives", || duty(&robot) != 0);
-        editor.good(last, json!({}));
+        if last == "terminate" {
+            editor.good(last, json!({}));
+        }
         editor.end();
         let status = robot.robot.home.run(&["status", "--robot", robot.ip()]);
         let status = status.good();
