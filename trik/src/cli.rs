@@ -251,12 +251,14 @@ enum Command {
     ///
     /// Exit status: 0 you have ended it; 2 the program cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),
-    /// Debug diagrams and data-flow programs from an editor, by the Debug Adapter Protocol.
+    /// Debug programs from an editor, by the Debug Adapter Protocol.
     ///
     /// Serves one client on standard input and output, or clients on a TCP port. A launch request has program, a diagram
     /// NAME.qrs or a data-flow program NAME.flow, and may have robot, field, task, inputs, gamepad, seed, speed, language,
     /// stopOnEntry, stopAtEnd and noDebug; attach joins the program that runs on a robot. Lines are those of the program as
-    /// text, which the adapter gives.
+    /// text, which the adapter gives. A program NAME.py or NAME.js is debugged on a robot: Python by debugpy, which both
+    /// computers need and which cannot be attached, and JavaScript with pauses and stops at errors alone; for them a request
+    /// may have robot, language and stopOnEntry, and for Python also python, motors and the keys of debugpy.
     ///
     /// Exit status: 0 the client has ended; 2 the port cannot be had, or the command line was not understood.
     Dap(dap::DapArgs),

@@ -1,4 +1,4 @@
-//! `trik dap`: diagrams in the debugger of an editor, by the Debug Adapter Protocol.
+//! `trik dap`: programs of blocks, in Python and in JavaScript in the debugger of an editor, by the Debug Adapter Protocol.
 //!
 //! Owns how a client comes: over standard input and output, or over TCP, one after the other. `greeting` begins a talk, `session` is one, `client`
 //! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
