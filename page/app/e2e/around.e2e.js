@@ -12,6 +12,7 @@ const there = scene();
 function robotAt(page) {
   return page.evaluate(() => {
     const canvas = document.querySelector('.stage canvas');
+    if (!canvas) return null;
     const { width, height } = canvas;
     const { data } = canvas.getContext('2d').getImageData(0, 0, width, height);
     let [count, x, y] = [0, 0, 0];

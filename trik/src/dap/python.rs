@@ -113,6 +113,8 @@ enum Asked {
     Attach,
     /// That motors rest, which it says they do.
     Hold,
+    /// That they go on; nothing waits for that.
+    GoOn,
     /// Something that the program does before this is passed on.
     First(Request, Instant),
 }
@@ -289,7 +291,7 @@ impl<'a> Session<'a> {
             Some("continued") => {
                 self.client.pass(message);
                 if std::mem::take(&mut self.is_held) {
-                    self.in_program("_go_on()", Asked::Aside);
+                    self.in_program("_go_on()", Asked::GoOn);
                 }
             }
             // The robot knows more of the end.
@@ -321,6 +323,7 @@ impl<'a> Session<'a> {
                 let do_rest = is_done && message["body"]["result"] == "True";
                 self.turning = (!do_rest).then(Instant::now);
             }
+            Asked::GoOn => {}
             Asked::First(request, _) => self.adapter.send(&request.whole()),
         }
         None
