@@ -425,9 +425,9 @@ mod tests {
 
     /// What an editor is told.
     #[derive(Clone, Default)]
-    struct Told(Arc<Mutex<Vec<u8>>>);
+    struct Screen(Arc<Mutex<Vec<u8>>>);
 
-    impl Write for Told {
+    impl Write for Screen {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             self.0.lock().expect("nobody fails").extend(bytes);
             Ok(bytes.len())
@@ -438,7 +438,7 @@ mod tests {
         }
     }
 
-    impl Told {
+    impl Screen {
         fn stops(&self) -> usize {
             let told = self.0.lock().expect("nobody fails");
             let told = String::from_utf8_lossy(&told);
@@ -450,7 +450,7 @@ mod tests {
     fn stops(requests: &[(&str, Value, Value)], report: Value) -> usize {
         let answers = requests.iter().map(|(_, _, answer)| answer.clone());
         let mut robot = Robot(answers.collect());
-        let told = Told::default();
+        let told = Screen::default();
         let mut client = Client::new(io::empty(), Box::new(told.clone()));
         let mut session = Session {
             client: &mut client,
