@@ -7,7 +7,7 @@ use lang_diagram::sketch::Sketch;
 use serde_json::{Value, json};
 
 /// Drives with M3, and counts by a step every 20 ms; line 5 counts.
-fn driving(step: &str) -> Vec<u8> {
+pub(super) fn driving(step: &str) -> Vec<u8> {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let clear = sketch.block("Function", &[("Body", "n = 0")]);

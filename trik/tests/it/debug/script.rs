@@ -1,7 +1,7 @@
 //! Programs in JavaScript in the debugger of an editor: what their engine can, and words for what it cannot.
 
-use super::counting_by;
 use super::dap::Editor;
+use super::restart::driving;
 use crate::programs::Reachable;
 use harness::eventually;
 use serde_json::{Value, json};
@@ -145,7 +145,7 @@ fn a_program_in_another_language_is_not_joined_and_runs_on() {
     };
     let home = &robot.robot.home.0;
     let (diagram, script) = (
-        home.file("count.qrs", counting_by("n = n + 1\nwait(600000)")),
+        home.file("blocks.qrs", driving("1")),
         home.file("drive.js", DRIVING),
     );
     for (runs, joined, part) in [
