@@ -12,7 +12,7 @@ function pace(ms) {
   script.wait(ms);
 }
 function compute() {
-  for (var n = 0; ; ++n) { if (n % 100000 == 0) brick.sensor(A1).read(); }
+  for (var n = 0; ; ++n) { if (n % 100000 == 0) brick.sensor(A1).read(); if (n == 0) print('computes'); }
 }
 var main = function() {
   Threading.startThread('busy', compute);
@@ -57,6 +57,13 @@ fn a_program_in_javascript_pauses_with_its_motors_and_goes_on() {
     assert_eq!(duty(&robot), 0);
     editor.good("continue", json!({"threadId": 1}));
     eventually("a robot that drives", || duty(&robot) != 0);
+    // Before it has called the robot once, nobody knows where it is.
+    eventually("a second thread", || {
+        let told = editor.event("output");
+        told["output"]
+            .as_str()
+            .is_some_and(|text| text.contains("computes"))
+    });
     for _ in 0..3 {
         editor.good("pause", json!({"threadId": 1}));
         assert_eq!(editor.event("stopped")["reason"], "pause");
