@@ -218,7 +218,7 @@ mod tests {
         for (name, why) in [
             ("a:b.js", "':'"),
             (".hidden.js", "begins with a dot"),
-            ("none.js", "No such file"),
+            ("none.js", "there is no such file"),
         ] {
             if name != "none.js" {
                 std::fs::write(dir.join(name), "x").expect(name);

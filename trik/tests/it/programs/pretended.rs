@@ -96,7 +96,7 @@ fn a_robot_that_cannot_or_will_not_is_a_sentence_with_what_to_do() {
     let strange = loopback();
     pretend(&strange, |_| "999999999:".to_owned());
     for (words, reason) in [
-        (vec!["run", "none.js"], "none.js: No such file"),
+        (vec!["run", "none.js"], "none.js: there is no such file"),
         (
             vec!["run", "x.js", "--robot", &wary],
             "press Enter on the robot within 30 s",
