@@ -31,7 +31,7 @@ const READ_AT_ONCE: usize = 64;
 /// The longest sleep.
 const SLEEP: Duration = Duration::from_secs(1);
 
-/// Who is let in, and what is said to them.
+/// Which clients are let in, and what they are told of the server.
 #[derive(Clone, Debug)]
 pub struct House {
     /// What is served, for people.
@@ -397,7 +397,7 @@ impl Client<'_> {
 /// What all clients share.
 #[derive(Clone)]
 pub struct Served {
-    /// Who is let in.
+    /// Which clients are let in.
     pub house: Arc<House>,
     /// What is told.
     pub hub: Arc<Hub>,

@@ -20,10 +20,10 @@ pub(crate) struct RecordedArgs {
     pub pose_from: Origin,
     /// With --log: the second of a recording at which the run begins [default: when its first program starts, or else its
     /// beginning].
-    #[arg(long, value_name = "SECONDS", value_parser = moment_of)]
+    #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub from: Option<u64>,
     /// With --log: the second of a recording at which the run ends [default: when that program ends, or else its end].
-    #[arg(long, value_name = "SECONDS", value_parser = moment_of)]
+    #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub to: Option<u64>,
 }
 
@@ -70,9 +70,4 @@ impl RecordedArgs {
         }
         words
     }
-}
-
-/// A moment as seconds from the beginning of a recording, in ns.
-fn moment_of(text: &str) -> Result<u64, String> {
-    moment(text).map_err(|why| why.to_string())
 }

@@ -265,7 +265,7 @@ mod tests {
             assert_eq!(soon, Some(Duration::from_millis(limits::JS_LOOK_MS)));
             assert_eq!(orders.warning().is_some(), is_first, "told once");
         }
-        // Who wants motors to turn does not hear of those that do.
+        // If motors are to be kept, those that turn are not reported.
         orders.order(&debugger, 1, "motors keep");
         assert_eq!(orders.news(&debugger).1, None);
         orders.order(&debugger, 2, "motors rest");
