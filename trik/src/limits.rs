@@ -141,6 +141,8 @@ pub const PASSED_MAX: usize = 1000;
 pub const WORLD_BYTES_MAX: u64 = 32 << 20;
 /// Bytes of a recorded trajectory.
 pub const LOG_BYTES_MAX: u64 = 256 << 20;
+/// How late in a run a node may speak first: what it says then counts from the beginning.
+pub(crate) const FIRST_SAMPLE_MS: u64 = 1_000;
 /// Programs of a recording that a person is told of, so that one of them can be chosen.
 pub(crate) const RUNS_TOLD: usize = 12;
 /// Bytes of what a worker says of one run.

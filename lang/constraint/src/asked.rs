@@ -115,9 +115,9 @@ impl<'a> Walk<'a, '_> {
                 | Operand::Unary(..)
                 | Operand::Binary(..)) => self.operand(other),
             },
-            Operand::Unary(_, one) => self.operand(one),
+            Operand::Unary(Unary::Minus | Unary::Abs, one) => self.operand(one),
             Operand::Binary(_, both) => both.iter().for_each(|one| self.operand(one)),
-            // What a class an object has, its world says.
+            // The world says which class an object has.
             Operand::Constant(_) | Operand::Variable(_) | Operand::TypeOf(_) => {}
         }
     }

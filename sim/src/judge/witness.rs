@@ -87,14 +87,22 @@ pub fn needs(task: &Task) -> Needs {
     needs
 }
 
+fn motors() -> impl Iterator<Item = Fact> {
+    let motors = Port::all().filter(|port| port.sort() == Sort::Motor);
+    motors.map(Fact::Port)
+}
+
 /// What has to be known for it.
 fn facts(one: &Asked) -> Vec<Fact> {
     let property = one.chain.first().map_or("", |name| &**name);
+    // A variable that holds the thing itself may be asked for anything of it.
+    let is_whole = one.wish == Wish::Property && one.chain.is_empty();
     match subject(one.object) {
-        Some(Subject::Robot(0)) if property == "isRiding" => {
-            let motors = Port::all().filter(|port| port.sort() == Sort::Motor);
-            motors.map(Fact::Port).collect()
+        Some(Subject::Robot(0)) if is_whole => motors().chain([Fact::Place]).collect(),
+        Some(Subject::Device(0, port)) if is_whole && port.sort() != Sort::Vector => {
+            vec![Fact::Port(port), Fact::Place]
         }
+        Some(Subject::Robot(0)) if property == "isRiding" => motors().collect(),
         Some(Subject::Robot(0)) => vec![Fact::Place],
         // A place that is asked of what a robot carries is that of the robot.
         Some(Subject::Device(0, _) | Subject::Part(0, _)) if one.wish == Wish::Place => {

@@ -26,6 +26,8 @@ use std::path::Path;
 use trikd::protocol::news;
 
 const MS: u64 = 1_000_000;
+/// Why a sample says nothing.
+const NO_NUMBER: &str = "no number";
 /// Both lights together.
 const ORANGE: &str = "orange";
 
@@ -230,7 +232,10 @@ impl Tape {
         let piece = match is_said {
             true => whole,
             false => {
-                let runs = self.runs().map_err(|why| words::unreadable(&why))?;
+                let (runs, is_open) = self.runs().map_err(|why| words::unreadable(&why))?;
+                if is_open && runs.len() == 1 {
+                    strange.push(words::unended());
+                }
                 if runs.len() > 1 {
                     let begins = runs.iter().map(|(name, piece)| {
                         let after = piece.begin_ns.saturating_sub(first);
@@ -257,8 +262,9 @@ impl Tape {
         Ok(piece)
     }
 
-    /// The programs that ran, as far as they were recorded: name and time. Only the first ones are looked for.
-    fn runs(&mut self) -> Result<Vec<(String, Piece)>, journal::error::Error> {
+    /// The programs that ran, as far as they were recorded: name and time; and whether the last one was not seen to end.
+    /// Only the first ones are looked for. One without an end has not ended well.
+    fn runs(&mut self) -> Result<(Vec<(String, Piece)>, bool), journal::error::Error> {
         let end_ns = self.reader.end_ns();
         let mut runs: Vec<(String, Piece)> = Vec::new();
         let mut is_open = false;
@@ -269,13 +275,17 @@ impl Tape {
                 continue;
             };
             if news::is_started(&line.text, &line.name) {
+                if is_open && let Some((_, run)) = runs.last_mut() {
+                    run.end_ns = event.unix_ns;
+                    is_open = false;
+                }
                 if runs.len() == limits::RUNS_TOLD {
                     break;
                 }
                 let piece = Piece {
                     begin_ns: event.unix_ns,
                     end_ns,
-                    with_errors: false,
+                    with_errors: true,
                 };
                 runs.push((harmless(&line.name), piece));
                 is_open = true;
@@ -288,14 +298,15 @@ impl Tape {
                 is_open = false;
             }
         }
-        Ok(runs)
+        Ok((runs, is_open))
     }
 
-    /// Goes to the beginning of the run. A sensor that is asked and says nothing in it cannot be judged by.
+    /// Goes to the beginning of the run. A sensor that is asked and says nothing there cannot be judged by.
     fn rewind(&mut self, needs: &[Need]) -> Result<(), Vec<Words>> {
         let Piece {
             begin_ns, end_ns, ..
         } = self.piece;
+        let soon_ns = begin_ns.saturating_add(limits::FIRST_SAMPLE_MS * MS);
         let unreadable = |why: journal::error::Error| vec![words::unreadable(&why)];
         let newest = self.reader.newest(begin_ns).map_err(unreadable)?;
         let of_run = self.feeds.iter().map(|(node, _)| *node);
@@ -304,29 +315,33 @@ impl Tape {
         nodes.dedup();
         let mut silent = Vec::new();
         for &node in &nodes {
-            let had = newest[node].as_ref();
-            let has_sample = had.is_some_and(|had| matches!(had.what, EventKind::Sample { .. }));
+            // What was said before the run is not said in it.
+            if self.says(node, Fact::Phrase) {
+                continue;
+            }
             let about = &self.reader.nodes()[node];
+            let had = newest[node].clone();
+            let had = had.filter(|had| matches!(had.what, EventKind::Sample { .. }));
             // What was never told anything is at rest.
-            if has_sample || about.is_written {
+            if had.is_some() || about.is_written {
+                self.before.extend(had);
                 continue;
             }
             let path = about.path.clone();
             self.reader.seek_among(begin_ns, &[node]);
             let first = self.reader.next().map_err(unreadable)?;
-            if first.is_none_or(|first| first.unix_ns > end_ns) {
-                let need = needs.iter().find(|need| self.says(node, need.fact));
-                silent.extend(need.map(|need| words::silent(need, &path)));
+            // What it said first counts from the beginning, if that was soon.
+            match first.filter(|first| first.unix_ns <= end_ns.min(soon_ns)) {
+                Some(first) => self.before.push(first),
+                None => {
+                    let need = needs.iter().find(|need| self.says(node, need.fact));
+                    silent.extend(need.map(|need| words::silent(need, &path)));
+                }
             }
         }
         if !silent.is_empty() {
             return Err(silent);
         }
-        let wanted = newest.into_iter().flatten();
-        let wanted = wanted.filter(|event| event.node().is_some_and(|node| nodes.contains(&node)));
-        self.before = wanted
-            .filter(|event| matches!(event.what, EventKind::Sample { .. }))
-            .collect();
         self.reader.seek_with_failures(begin_ns, &nodes);
         Ok(())
     }
@@ -355,20 +370,22 @@ impl Tape {
                 tuple,
                 ..
             } => {
-                let feeds = std::mem::take(&mut self.feeds);
-                for (_, feed) in feeds.iter().filter(|(of, _)| of == node) {
-                    let layout = &self.reader.layouts()[*layout];
-                    sample(
-                        feed,
-                        layout,
-                        tuple,
-                        self.origin,
-                        &mut self.zero,
-                        &mut self.lights,
-                        to,
-                    );
+                let layout = &self.reader.layouts()[*layout];
+                let feeds = self.feeds.iter().filter(|(of, _)| of == node);
+                for (_, feed) in feeds {
+                    let place = (self.origin, &mut self.zero);
+                    let said = sample(feed, (layout, tuple), place, &mut self.lights, to);
+                    let Err(NoNumber) = said else {
+                        continue;
+                    };
+                    let path = &self.reader.nodes()[*node].path;
+                    if matches!(feed, Feed::Place(..)) {
+                        return Err(words::place_lost(path, after, NO_NUMBER));
+                    }
+                    if self.failed.insert(*node) {
+                        to.warn(words::failed(path, after, NO_NUMBER));
+                    }
                 }
-                self.feeds = feeds;
             }
             EventKind::Fault { node, reason, .. } => {
                 let mut of_node = self.feeds.iter().filter(|(of, _)| of == node).peekable();
@@ -391,23 +408,28 @@ impl Tape {
     }
 }
 
+/// A sample whose value is NaN or infinite.
+#[derive(Debug)]
+struct NoNumber;
+
 /// Tells what a sample of a node says.
 fn sample(
     feed: &Feed,
-    layout: &Layout,
-    tuple: &[u8],
-    origin: Origin,
-    zero: &mut Option<Pose>,
+    (layout, tuple): (&Layout, &[u8]),
+    (origin, zero): (Origin, &mut Option<Pose>),
     lights: &mut [bool; 2],
     to: &mut Seen<'_>,
-) {
+) -> Result<(), NoNumber> {
     let numbers = layout.numbers(tuple);
     let number = |at: usize| numbers.get(at).map(|number| number.to_f64());
     match feed {
         Feed::Place(length, angle) => {
             let (Some(x), Some(y), Some(heading)) = (number(0), number(1), number(2)) else {
-                return;
+                return Err(NoNumber);
             };
+            if ![x, y, heading].into_iter().all(f64::is_finite) {
+                return Err(NoNumber);
+            }
             let place = Pose::new(x * length, y * length, heading * angle);
             let zero = *zero.get_or_insert(match origin {
                 Origin::Start => place,
@@ -421,8 +443,10 @@ fn sample(
                 Some(name) => names.iter().position(|own| own == name),
                 None => Some(0),
             };
-            if let Some(number) = at.and_then(number) {
-                to.port(*port, number.round() as i32);
+            match at.and_then(number) {
+                Some(number) if number.is_finite() => to.port(*port, number.round() as i32),
+                Some(_) => return Err(NoNumber),
+                None => {}
             }
         }
         Feed::Light(which) => {
@@ -436,6 +460,7 @@ fn sample(
         }
         Feed::Phrase => to.phrase(&layout.show(tuple)),
     }
+    Ok(())
 }
 
 /// A place as one sees it from another one.

@@ -34,8 +34,12 @@ pub(super) fn no_node(need: &Need, node: &str) -> Words {
 pub(super) fn silent(need: &Need, node: &str) -> Words {
     let Need { rule, text, .. } = need;
     Words::new(
-        format!("{rule} asks {text}, and node {node} says nothing in this part of the recording"),
-        format!("{rule} спрашивает {text}, а узел {node} в этой части записи молчит"),
+        format!(
+            "{rule} asks {text}, and node {node} says nothing up to the first second of this part of the recording"
+        ),
+        format!(
+            "{rule} спрашивает {text}, а узел {node} молчит до конца первой секунды этой части записи"
+        ),
     )
 }
 
@@ -61,7 +65,7 @@ pub(super) fn no_place(node: &str) -> Words {
 pub(super) fn no_place_in(node: &str, units: &str) -> Words {
     Words::new(
         format!(
-            "node {node} says no place: numbers x, y and heading or theta, in units such as 'mm, deg', are one; its units are '{units}'"
+            "node {node} says no place: that takes the numbers x, y and heading (or theta) in units such as 'mm, deg'; its units are '{units}'"
         ),
         format!(
             "узел {node} не сообщает положения: нужны числа x, y и heading или theta в единицах вроде 'mm, deg', а у него '{units}'"
@@ -72,9 +76,7 @@ pub(super) fn no_place_in(node: &str, units: &str) -> Words {
 /// The place was lost.
 pub(super) fn place_lost(node: &str, seconds: f64, why: &str) -> Words {
     Words::new(
-        format!(
-            "From {seconds:.2} s on nobody knows where the robot was: {node} has failed: {why}"
-        ),
+        format!("From {seconds:.2} s on the place of the robot is unknown: {node} failed: {why}"),
         format!("С {seconds:.2} с неизвестно, где был робот: сбой узла {node}: {why}"),
     )
 }
@@ -83,11 +85,19 @@ pub(super) fn place_lost(node: &str, seconds: f64, why: &str) -> Words {
 pub(super) fn failed(node: &str, seconds: f64, why: &str) -> Words {
     Words::new(
         format!(
-            "{node} has failed at {seconds:.2} s ({why}); until its next sample it counts as having what it had"
+            "{node} failed at {seconds:.2} s ({why}); its last value counts until the next sample"
         ),
         format!(
             "{node}: сбой в {seconds:.2} с ({why}); до следующего отсчёта считается прежнее значение"
         ),
+    )
+}
+
+/// The program that is judged has no end in the recording.
+pub(super) fn unended() -> Words {
+    Words::new(
+        "the recording ends before the program does, so what counts at the end of a program is not done",
+        "запись кончается раньше программы, поэтому то, что засчитывается в её конце, не выполнено",
     )
 }
 
