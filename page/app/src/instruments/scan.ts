@@ -72,6 +72,8 @@ export interface Inks {
   point: string;
   ring: string;
   label: string;
+  /** Around labels, so that points do not run through them. */
+  paper: string;
 }
 
 /** Draws it onto a square of so many pixels. */
@@ -114,6 +116,15 @@ export function drawScan(pen: CanvasRenderingContext2D, size: number, scan: Scan
   pen.closePath();
   pen.fill();
   pen.fillStyle = inks.label;
-  for (const ring of rings)
-    pen.fillText(`${numberText(ring)} ${scan.unit}`, middle, middle + ring * scale - 3);
+  pen.strokeStyle = inks.paper;
+  pen.lineWidth = 4;
+  for (const ring of rings) {
+    const label: [string, number, number] = [
+      `${numberText(ring)} ${scan.unit}`,
+      middle,
+      middle + ring * scale - 3,
+    ];
+    pen.strokeText(...label);
+    pen.fillText(...label);
+  }
 }
