@@ -167,8 +167,9 @@ impl Drop for Place {
 fn look(served: &Served) {
     loop {
         thread::sleep(PARAMETERS_TIME);
-        if served.hub.has_watchers() {
-            served.hub.parameters(&served.robot.parameters());
+        match served.hub.has_watchers() {
+            true => served.hub.parameters(&served.robot.parameters()),
+            false => served.robot.rest(),
         }
     }
 }

@@ -56,6 +56,9 @@ pub trait Programs: Send + Sync {
     /// The variables of the diagram that runs; none if none does.
     fn variables(&self) -> Vec<(String, Value)>;
 
+    /// Nobody wants to hear of variables for now: what is kept to read them may go.
+    fn rest(&self);
+
     /// Assigns one of them.
     ///
     /// # Errors
@@ -132,6 +135,13 @@ impl Robot {
         let variables = variables.map(|(name, value)| (format!("{DIAGRAM}{name}"), Some(value)));
         all.extend(variables.take(PARAMETERS_MAX));
         all
+    }
+
+    /// Nobody wants to hear of parameters for now.
+    pub fn rest(&self) {
+        if let Some(programs) = &self.programs {
+            programs.rest();
+        }
     }
 
     /// Gives a parameter a value.

@@ -32,7 +32,7 @@ pub(super) fn serve(args: &FoxgloveArgs) -> Result<u8, Refusal> {
         .programs
         .clone()
         .or_else(|| target(&format!("{shown}/")).ok());
-    let programs = programs.map(|at| Box::new(Programs(at)) as Box<dyn robot::Programs>);
+    let programs = programs.map(|at| Box::new(Programs::new(at)) as Box<dyn robot::Programs>);
     let house = House {
         name: shown.clone(),
         session: format!("{:x}-{:x}", now_ns(), std::process::id()),

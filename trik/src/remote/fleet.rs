@@ -14,7 +14,7 @@ use clap::Args;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use trikd::program::rest::is_explained;
 
 /// What `trik stop` and `trik status` can be told.
@@ -83,18 +83,38 @@ fn each<T: Send>(all: &[Target], work: impl Fn(&Target) -> T + Sync) -> Vec<T> {
 /// What a robot answered to a request and a `status` after it.
 pub(super) struct Answer {
     infos: Vec<String>,
-    pub(super) errors: Vec<String>,
+    errors: Vec<String>,
     /// None: it does not know the question.
     status: Option<String>,
 }
 
-pub(super) fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Error> {
+impl Answer {
+    /// What became of `stop`: a sentence, and true if everything rests. What a program says of itself is no failure of it.
+    pub(super) fn of_stop(&self) -> (bool, &str) {
+        let failure = self.errors.iter().find(|text| is_explained(text));
+        let mut ended = self.infos.iter().rev();
+        let ended = ended.find(|text| text.contains(" was stopped by "));
+        match (failure, ended, &self.status) {
+            (Some(text), _, _) => (false, text),
+            (None, Some(text), _) => (true, text),
+            (None, None, Some(_)) => (true, "no program was running; everything rests"),
+            (None, None, None) => (false, "was told to stop, and does not say whether it has"),
+        }
+    }
+}
+
+/// Asks, and waits for the answer for this long at most.
+pub(super) fn ask(
+    target: &Target,
+    request: Option<&[u8]>,
+    patience: Duration,
+) -> Result<Answer, Error> {
     let mut link = target.connect()?;
     if let Some(request) = request {
         link.ask(&[request]);
     }
     link.ask(&[b"status"]);
-    let deadline = Instant::now() + ms(limits::ANSWER_MS);
+    let deadline = Instant::now() + patience;
     let mut answer = Answer {
         infos: Vec::new(),
         errors: Vec::new(),
@@ -120,37 +140,27 @@ pub(super) fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Err
 /// 2 one could not be told.
 pub(crate) fn stop(args: &FleetArgs) -> u8 {
     ask_all(args, |target| {
-        let answer = ask(target, Some(b"stop"))?;
-        let failure = answer.errors.iter().find(|text| is_explained(text));
-        if let Some(text) = failure {
-            return Ok((1, format!("{target}: {text}\n")));
-        }
-        let ended = answer
-            .infos
-            .iter()
-            .rev()
-            .find(|text| text.contains(" was stopped by "));
-        let (code, text) = match (ended, answer.status) {
-            (Some(text), _) => (0, text.as_str()),
-            (None, Some(_)) => (0, "no program was running; everything rests"),
-            (None, None) => (1, "was told to stop, and does not say whether it has"),
-        };
+        let answer = ask(target, Some(b"stop"), ms(limits::ANSWER_MS))?;
+        let (rests, text) = answer.of_stop();
+        let code = u8::from(!rests);
         Ok((code, format!("{target}: {text}\n")))
     })
 }
 
 /// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
 pub(crate) fn status(args: &FleetArgs) -> u8 {
-    ask_all(args, |target| match ask(target, None)?.status {
-        Some(text) => Ok((
-            0,
-            text.lines()
-                .map(|line| format!("{target}: {line}\n"))
-                .collect(),
-        )),
-        None => Err(Error::Robot(format!(
-            "{target} does not know the question: its software is older than trikd"
-        ))),
+    ask_all(args, |target| {
+        match ask(target, None, ms(limits::ANSWER_MS))?.status {
+            Some(text) => Ok((
+                0,
+                text.lines()
+                    .map(|line| format!("{target}: {line}\n"))
+                    .collect(),
+            )),
+            None => Err(Error::Robot(format!(
+                "{target} does not know the question: its software is older than trikd"
+            ))),
+        }
     })
 }
 
@@ -293,6 +303,29 @@ mod tests {
             fleet(&many),
             Err(Error::Refused("65 robots: at most 64 at once".to_owned()))
         );
+    }
+
+    #[test]
+    fn a_stop_is_done_if_the_robot_says_so_whatever_its_program_says() {
+        let lines = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect();
+        let stopped = "x.js was stopped by a client after 0.1 s";
+        for (infos, errors, status, rests) in [
+            (&[stopped][..], &[][..], true, true),
+            (&[stopped], &["TypeError: x is not defined"], true, true),
+            (&[], &["TypeError: x is not defined"], true, true),
+            (&[], &[], true, true),
+            (&[stopped], &["not everything is at rest: M1"], true, false),
+            (&[], &[], false, false),
+            (&[], &["TypeError: x is not defined"], false, false),
+        ] {
+            let answer = Answer {
+                infos: lines(infos),
+                errors: lines(errors),
+                status: status.then(String::new),
+            };
+            let (told, why) = answer.of_stop();
+            assert_eq!(told, rests, "{infos:?} {errors:?} {status}: {why}");
+        }
     }
 
     #[test]
