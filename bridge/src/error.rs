@@ -17,7 +17,7 @@ pub enum Error {
     /// There are no more threads.
     Thread(String),
     /// Nothing can be made of what a tree has.
-    Message(String),
+    Message(journal::error::Error),
 }
 
 impl Error {

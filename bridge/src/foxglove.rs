@@ -61,10 +61,12 @@ pub fn serve(
         hub: hub.clone(),
         robot: Arc::new(robot),
     };
+    // Threads do not end: they begin when nothing else can fail.
+    let live = begun(program)?;
     let looking = served.clone();
     let threads: [(&str, Work); 2] = [
-        ("foxglove", Box::new(move || accept(&listener, &served))),
         ("parameters", Box::new(move || look(&looking))),
+        ("foxglove", Box::new(move || accept(&listener, &served))),
     ];
     for (name, work) in threads {
         let thread = thread::Builder::new().name(name.to_owned()).spawn(work);
@@ -72,7 +74,7 @@ pub fn serve(
     }
     Ok(Server {
         hub,
-        live: begun(program)?,
+        live,
         program: program.to_owned(),
         address,
         beat_at: Instant::now(),
@@ -80,7 +82,7 @@ pub fn serve(
 }
 
 fn begun(program: &str) -> Result<Live, Error> {
-    Live::begin(program).map_err(|why| Error::Message(why.to_string()))
+    Live::begin(program).map_err(Error::Message)
 }
 
 impl Server {
@@ -89,21 +91,19 @@ impl Server {
         self.address
     }
 
-    /// Takes what came in one look at the tree.
-    ///
-    /// # Errors
-    /// Nothing can be made of it.
-    pub fn take(&mut self, entries: &[Entry]) -> Result<(), Error> {
-        let records = self.live.take(entries);
+    /// Takes what came in one look at the tree. Clients are told if something of it cannot be passed on.
+    pub fn take(&mut self, entries: &[Entry]) {
+        let (records, failure) = self.live.take(entries);
         self.hub.take_faults(entries);
-        self.hub
-            .take(records.map_err(|why| Error::Message(why.to_string()))?);
+        self.hub.take(records);
+        if let Some(why) = failure {
+            self.hub.failed(&Error::Message(why).to_string());
+        }
         let now = Instant::now();
         if now >= self.beat_at {
             self.beat_at = now + BEAT_TIME;
             self.hub.beat(now_ns());
         }
-        Ok(())
     }
 
     /// The tree is gone.

@@ -36,6 +36,8 @@ pub const CHANNELS_MAX: usize = 16_384;
 pub const SUBSCRIPTIONS_MAX: usize = 16_384;
 /// Bytes of samples that wait for one client; of more the oldest are lost.
 pub const DATA_BYTES_MAX: usize = 4 << 20;
+/// What a sample that waits takes beside its bytes.
+pub const SAMPLE_BYTES: usize = 64;
 /// Bytes of all else that waits for one client; one that has more is given up. All types of a large tree fit.
 pub const CONTROL_BYTES_MAX: usize = 32 << 20;
 /// Messages that are handed to a socket at a time, before what comes from it is looked at.
@@ -44,11 +46,15 @@ pub const SENT_AT_ONCE: usize = 256;
 pub const STUCK_TIME: Duration = Duration::from_secs(30);
 /// How often a silent client is asked whether it is there.
 pub const PING_TIME: Duration = Duration::from_secs(10);
+/// Until a client that has not answered is let go: three questions.
+pub const DEAF_TIME: Duration = Duration::from_secs(30);
 /// How often clients are told the time.
 pub const BEAT_TIME: Duration = Duration::from_millis(100);
 /// How often parameters are looked at while anybody wants to hear of changes.
 pub const PARAMETERS_TIME: Duration = Duration::from_secs(1);
 /// Parameters of one robot.
 pub const PARAMETERS_MAX: usize = 4096;
+/// How old values of parameters may be that several clients ask for.
+pub const SNAPSHOT_TIME: Duration = Duration::from_millis(200);
 /// Bytes of one parameter.
 pub const PARAMETER_BYTES_MAX: u64 = 4096;

@@ -31,20 +31,27 @@ impl Live {
         })
     }
 
-    /// What a recording would have of the entries of one look.
-    ///
-    /// # Errors
-    /// A node has a format that is none, or there are too many.
-    pub fn take(&mut self, entries: &[Entry]) -> Result<Vec<Record>, Error> {
+    /// What a recording would have of the entries of one look, and the first failure: a node has a format that is none, or
+    /// there are too many. Of other nodes all is there.
+    pub fn take(&mut self, entries: &[Entry]) -> (Vec<Record>, Option<Error>) {
+        let mut failure = None;
+        let mut keep = |result: Result<(), Error>| {
+            if let Err(why) = result {
+                failure.get_or_insert(why);
+            }
+        };
         for entry in entries {
             match entry {
                 Entry::Attachment(..) | Entry::Facts(..) => {}
                 Entry::Node(_) | Entry::Sample(..) | Entry::Fault(..) | Entry::Line(..) => {
-                    self.pen.put(entry)?;
+                    keep(self.pen.put(entry));
                 }
             }
         }
-        self.pen.settle(false)?;
-        records(&self.out.take())
+        keep(self.pen.settle(false));
+        match records(&self.out.take()) {
+            Ok(all) => (all, failure),
+            Err(why) => (Vec::new(), failure.or(Some(why))),
+        }
     }
 }

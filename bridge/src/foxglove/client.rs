@@ -5,12 +5,13 @@
 
 use super::hub::{ClientId, Hub, Next};
 use super::protocol::{self, Mistake, Request, SUBPROTOCOLS, Weight};
-use super::robot::Robot;
+use super::robot::{self, Robot};
 use crate::limits::{
-    HANDSHAKE_TIME, MESSAGE_BYTES_MAX, MISTAKES_MAX, PING_TIME, SENT_AT_ONCE, STUCK_TIME,
+    DEAF_TIME, HANDSHAKE_TIME, MESSAGE_BYTES_MAX, MISTAKES_MAX, PING_TIME, SENT_AT_ONCE, STUCK_TIME,
 };
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use serde_json::Value;
+use std::collections::{BTreeSet, HashMap};
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, TcpStream};
 use std::os::fd::AsFd;
@@ -28,6 +29,8 @@ const ORIGINS: [&str; 1] = ["https://app.foxglove.dev"];
 const WRITTEN_AT_ONCE: usize = 16 << 10;
 /// Messages that are taken from a client before it is told something.
 const READ_AT_ONCE: usize = 64;
+/// Why a client that only looks is refused.
+const LOOKS_ONLY: &str = "clients of other machines only look here; --control lets them act";
 /// The longest sleep.
 const SLEEP: Duration = Duration::from_secs(1);
 
@@ -48,6 +51,8 @@ pub struct House {
 struct Timed {
     stream: TcpStream,
     until: Option<Instant>,
+    /// When it took something.
+    took_at: Instant,
 }
 
 impl Timed {
@@ -77,7 +82,9 @@ impl Write for Timed {
         if let Some(left) = self.left()? {
             self.stream.set_write_timeout(Some(left))?;
         }
-        self.stream.write(bytes)
+        let count = self.stream.write(bytes)?;
+        self.took_at = Instant::now();
+        Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -94,6 +101,10 @@ fn may_come(origin: &str, others: &[String]) -> bool {
         // That of a page which hides where it is from.
         return false;
     };
+    // Extensions of a browser come with any page.
+    if scheme.ends_with("-extension") {
+        return false;
+    }
     if !matches!(scheme, "http" | "https") {
         return true;
     }
@@ -108,6 +119,11 @@ fn may_come(origin: &str, others: &[String]) -> bool {
     host == "localhost" || is_here
 }
 
+/// Whether a client at this address may change things, and not only look and stop.
+fn may_act(peer: IpAddr, house: &House) -> bool {
+    house.lets_all_act || peer.to_canonical().is_loopback()
+}
+
 /// Serves one client until it is gone.
 ///
 /// # Errors
@@ -118,6 +134,7 @@ pub fn serve(stream: TcpStream, house: &House, hub: &Hub, robot: &Robot) -> Resu
     let timed = Timed {
         stream,
         until: Some(Instant::now() + HANDSHAKE_TIME),
+        took_at: Instant::now(),
     };
     let config = WebSocketConfig::default()
         .read_buffer_size(8 << 10)
@@ -133,8 +150,8 @@ pub fn serve(stream: TcpStream, house: &House, hub: &Hub, robot: &Robot) -> Resu
     let (wake, woken) = UnixStream::pair()?;
     wake.set_nonblocking(true)?;
     woken.set_nonblocking(true)?;
-    let may_act = peer.ip().to_canonical().is_loopback() || house.lets_all_act;
-    let info = protocol::server_info(&house.name, &house.session, may_act);
+    let may_act = may_act(peer.ip(), house);
+    let info = protocol::server_info(&house.name, &house.session);
     let id = hub.enter(&peer.to_string(), info, may_act, wake);
     let mut client = Client {
         socket,
@@ -145,8 +162,8 @@ pub fn serve(stream: TcpStream, house: &House, hub: &Hub, robot: &Robot) -> Resu
         robot,
         mistakes: 0,
         is_pending: false,
-        took_at: Instant::now(),
         asked_at: Instant::now(),
+        heard_at: Instant::now(),
     };
     let ended = client.run();
     hub.leave(id);
@@ -187,7 +204,7 @@ fn greet(
         }
         None => refuse(
             StatusCode::BAD_REQUEST,
-            "here the subprotocols foxglove.sdk.v1 and foxglove.websocket.v1 are spoken",
+            "this server speaks only foxglove.sdk.v1 and foxglove.websocket.v1",
         ),
     }
 }
@@ -202,10 +219,33 @@ struct Client<'a> {
     mistakes: usize,
     /// The socket takes no more.
     is_pending: bool,
-    /// When it took all that there was.
-    took_at: Instant,
     /// When it was asked whether it is there.
     asked_at: Instant,
+    /// When it said something, if only that it is there.
+    heard_at: Instant,
+}
+
+/// What comes of the silence of a client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Silence {
+    /// Nothing.
+    Fine,
+    /// It is asked whether it is there.
+    Ask,
+    /// It is let go.
+    End,
+}
+
+/// For how long a socket that is full (`pending`) has taken nothing, or else the client was not asked, nor heard.
+fn silence(pending: Option<Duration>, asked: Duration, heard: Duration) -> Silence {
+    match pending {
+        // The question would wait behind what waits, and so would the answer.
+        Some(stuck) if stuck > STUCK_TIME => Silence::End,
+        Some(_) => Silence::Fine,
+        None if heard > DEAF_TIME => Silence::End,
+        None if asked > PING_TIME => Silence::Ask,
+        None => Silence::Fine,
+    }
 }
 
 /// What nobody has to wait for is no error.
@@ -222,13 +262,16 @@ impl Client<'_> {
     fn run(&mut self) -> Result<(), Error> {
         loop {
             let has_more = self.write()? | self.read()?;
-            if self.is_pending && self.took_at.elapsed() > STUCK_TIME {
-                return Err(Error::Io(io::ErrorKind::TimedOut.into()));
-            }
-            if self.asked_at.elapsed() > PING_TIME && !self.is_pending {
-                self.asked_at = Instant::now();
-                unless_blocked(self.socket.write(Message::Ping(Vec::new().into())))?;
-                self.flush()?;
+            let took_at = self.socket.get_ref().took_at;
+            let pending = self.is_pending.then(|| took_at.elapsed());
+            match silence(pending, self.asked_at.elapsed(), self.heard_at.elapsed()) {
+                Silence::Fine => {}
+                Silence::Ask => {
+                    self.asked_at = Instant::now();
+                    unless_blocked(self.socket.write(Message::Ping(Vec::new().into())))?;
+                    self.flush()?;
+                }
+                Silence::End => return Err(Error::Io(io::ErrorKind::TimedOut.into())),
             }
             let sleep = if has_more { Duration::ZERO } else { SLEEP };
             self.wait(sleep);
@@ -253,9 +296,15 @@ impl Client<'_> {
     }
 
     fn flush(&mut self) -> Result<(), Error> {
+        let was_pending = self.is_pending;
         self.is_pending = unless_blocked(self.socket.flush())?.is_none();
-        if !self.is_pending {
-            self.took_at = Instant::now();
+        let now = Instant::now();
+        match (was_pending, self.is_pending) {
+            // It may have had nothing to take for long.
+            (false, true) => self.socket.get_mut().took_at = now,
+            // While it took what waited nobody could ask it.
+            (true, false) => self.heard_at = now,
+            (false, false) | (true, true) => {}
         }
         Ok(())
     }
@@ -299,6 +348,7 @@ impl Client<'_> {
             let Some(message) = unless_blocked(self.socket.read())? else {
                 return Ok(false);
             };
+            self.heard_at = Instant::now();
             let request = match message {
                 Message::Text(text) => protocol::text(text.as_str()),
                 Message::Binary(bytes) => protocol::binary(&bytes),
@@ -348,28 +398,29 @@ impl Client<'_> {
     fn tell(&self, names: &[String], word: Option<&str>) {
         let all = self.robot.parameters();
         self.hub.parameters(&all);
-        let wanted: Vec<(String, Option<Value>)> = match names.is_empty() {
-            true => all,
-            false => {
-                let value = |name: &String| all.iter().find(|(one, _)| one == name)?.1.clone();
-                names
-                    .iter()
-                    .map(|name| (name.clone(), value(name)))
-                    .collect()
-            }
-        };
+        if names.is_empty() {
+            return self.say(protocol::parameter_values(&all, word));
+        }
+        let values: HashMap<&str, &Option<Value>> = all
+            .iter()
+            .map(|(name, value)| (name.as_str(), value))
+            .collect();
+        // Each once, however often it is named.
+        let names: BTreeSet<&String> = names.iter().collect();
+        let value = |name: &str| (*values.get(name)?).clone();
+        let wanted: Vec<(String, Option<Value>)> = names
+            .into_iter()
+            .map(|name| (name.clone(), value(name)))
+            .collect();
         self.say(protocol::parameter_values(&wanted, word));
     }
 
     fn set(&self, values: &[(String, Value)], word: Option<&str>) {
         if !self.may_act {
-            return self
-                .complain("clients of other machines only look here; --control lets them act");
+            return self.complain(LOOKS_ONLY);
         }
-        for (name, value) in values {
-            if let Err(why) = self.robot.set(name, value) {
-                self.complain(&why.to_string());
-            }
+        for why in self.robot.set(values) {
+            self.complain(&why.to_string());
         }
         // What was taken, which may be something else than what was wanted.
         let names: Vec<String> = values.iter().map(|(name, _)| name.clone()).collect();
@@ -379,12 +430,12 @@ impl Client<'_> {
     }
 
     fn call(&self, service: u32, call: u32, arguments: &Value) {
-        let done = match self.may_act {
+        let done = match self.may_act || robot::is_for_all(service) {
             true => self
                 .robot
                 .call(service, arguments)
                 .map_err(|why| why.to_string()),
-            false => Err("clients of other machines only look here".to_owned()),
+            false => Err(LOOKS_ONLY.to_owned()),
         };
         let next = match done {
             Ok(()) => Next::Bytes(protocol::call_done(service, call)),
@@ -408,6 +459,7 @@ pub struct Served {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tungstenite::protocol::Role;
 
     #[test]
     fn pages_of_others_do_not_come_in() {
@@ -426,6 +478,9 @@ mod tests {
         for origin in [
             "null",
             "",
+            "chrome-extension://abcdef",
+            "moz-extension://abcdef",
+            "safari-web-extension://abcdef",
             "http://evil.example",
             "https://app.foxglove.dev.evil.example",
             "http://localhost.evil.example",
@@ -434,5 +489,126 @@ mod tests {
         ] {
             assert!(!may_come(origin, &others), "{origin}");
         }
+    }
+
+    fn house(lets_all_act: bool) -> House {
+        House {
+            name: "test".to_owned(),
+            session: "1".to_owned(),
+            origins: Vec::new(),
+            lets_all_act,
+        }
+    }
+
+    #[test]
+    fn clients_of_this_machine_may_act_and_others_if_all_may() {
+        for (peer, may) in [
+            ("127.0.0.1", true),
+            ("127.8.9.1", true),
+            ("::1", true),
+            ("::ffff:127.0.0.1", true),
+            ("192.168.77.2", false),
+            ("::ffff:192.168.77.2", false),
+            ("fe80::1", false),
+            ("0.0.0.0", false),
+        ] {
+            let address = peer.parse().unwrap();
+            assert_eq!(may_act(address, &house(false)), may, "{peer}");
+            assert!(may_act(address, &house(true)), "{peer}");
+        }
+    }
+
+    #[test]
+    fn who_takes_or_says_nothing_is_asked_and_then_let_go() {
+        let more = Duration::from_secs(1);
+        let none = Duration::ZERO;
+        for (pending, asked, heard, comes) in [
+            (None, none, none, Silence::Fine),
+            (None, PING_TIME + more, PING_TIME + more, Silence::Ask),
+            (None, none, DEAF_TIME + more, Silence::End),
+            (
+                Some(none),
+                PING_TIME + more,
+                DEAF_TIME + more,
+                Silence::Fine,
+            ),
+            (Some(STUCK_TIME + more), none, none, Silence::End),
+        ] {
+            assert_eq!(silence(pending, asked, heard), comes);
+        }
+    }
+
+    #[test]
+    fn a_client_that_only_looks_may_stop_and_changes_nothing() {
+        let directory = tempfile::tempdir().unwrap();
+        let node = directory.path().join("a");
+        std::fs::create_dir(&node).unwrap();
+        for (name, text) in [
+            ("format", "u8 x\n"),
+            ("bin_data", "\0"),
+            ("poll_ms", "20\n"),
+        ] {
+            std::fs::write(node.join(name), text).unwrap();
+        }
+        let (hub, robot) = (Hub::default(), Robot::new(directory.path(), None));
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let stream = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let timed = Timed {
+            stream,
+            until: None,
+            took_at: Instant::now(),
+        };
+        let (wake, woken) = UnixStream::pair().unwrap();
+        let mut client = Client {
+            socket: WebSocket::from_raw_socket(timed, Role::Server, None),
+            woken,
+            id: hub.enter("c", String::new(), false, wake),
+            may_act: false,
+            hub: &hub,
+            robot: &robot,
+            mistakes: 0,
+            is_pending: false,
+            asked_at: Instant::now(),
+            heard_at: Instant::now(),
+        };
+        let told = |client: &Client| {
+            let all = std::iter::from_fn(|| hub.next(client.id).unwrap());
+            all.map(|next| format!("{next:?}")).collect::<String>()
+        };
+        let offered = told(&client);
+        assert!(
+            offered.contains("/stop") && !offered.contains("/run"),
+            "{offered}"
+        );
+        let set = || Request::SetParameters(vec![("a/poll_ms".to_owned(), 50.into())], None);
+        let run = || Request::Call(2, 1, serde_json::json!({"file": "x"}));
+        for request in [set(), run(), Request::Call(0, 1, Value::Null)] {
+            client.perform(request);
+            let why = told(&client);
+            assert!(
+                why.contains("only look here") && !why.contains("poll_ms"),
+                "{why}"
+            );
+        }
+        let poll = || std::fs::read_to_string(node.join("poll_ms")).unwrap();
+        assert_eq!(poll(), "20\n");
+        client.perform(Request::Call(1, 1, Value::Null));
+        assert!(told(&client).contains("Bytes([3, 1,"));
+        let stop = std::fs::read_to_string(directory.path().join("stop"));
+        assert_eq!(stop.unwrap(), "1\n");
+        // One that may act does both, and is told each value once.
+        client.may_act = true;
+        client.perform(set());
+        assert_eq!(
+            (poll().as_str(), told(&client).contains("50")),
+            ("50\n", true)
+        );
+        client.perform(run());
+        assert!(told(&client).contains("nobody takes programs"));
+        client.perform(Request::GetParameters(
+            vec!["a/poll_ms".to_owned(); 9],
+            None,
+        ));
+        assert_eq!(told(&client).matches("poll_ms").count(), 1);
     }
 }

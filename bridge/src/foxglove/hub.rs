@@ -1,109 +1,36 @@
 //! What clients are told: channels, the newest of each one, failures, and who listens to what.
 //!
-//! Owns the queue of each client. A queue is bounded: a client that does not read loses the oldest samples and never delays
-//! anybody; one that does not even read what it has asked for is given up. Knows no sockets: code that has one takes from its
-//! queue.
+//! Owns which client hears what; `queue` has what waits for each one, within its bounds. Knows no sockets: code that has one
+//! takes from its queue.
+
+mod queue;
+
+pub use queue::{GivenUp, Next};
 
 use super::protocol::{self, About, Graph, Weight};
-use crate::limits::{CHANNELS_MAX, CONTROL_BYTES_MAX, DATA_BYTES_MAX, SUBSCRIPTIONS_MAX};
+use super::robot;
+use crate::limits::CHANNELS_MAX;
 use journal::records::Record;
+use queue::{Queue, Sample, Watches};
 use recorder::entry::Entry;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
-use std::io::Write;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The name under which all is published.
 const PUBLISHER: &str = "trikfs";
+/// The id of the status of a robot that is gone.
+const ROBOT: &str = "robot";
+/// That of what the bridge itself could not pass on.
+const BRIDGE: &str = "bridge";
 
 /// A client, by a number of its own.
 pub type ClientId = u64;
 
-/// What goes to one client next.
-#[derive(Debug)]
-pub enum Next {
-    /// A text.
-    Text(String),
-    /// Bytes.
-    Bytes(Vec<u8>),
-}
-
-/// A message of a channel.
-#[derive(Clone)]
-struct Sample {
-    at_ns: u64,
-    bytes: Arc<[u8]>,
-}
-
 struct Channel {
     about: About,
     newest: Option<Sample>,
-}
-
-/// What waits for one client.
-struct Queue {
-    name: String,
-    control: VecDeque<Next>,
-    control_bytes: usize,
-    data: VecDeque<(u32, Sample)>,
-    data_bytes: usize,
-    time: Option<u64>,
-    /// The numbers that a client has for a channel.
-    listens: HashMap<u32, Vec<u32>>,
-    subscriptions: HashMap<u32, u32>,
-    watches_graph: bool,
-    /// Names of parameters; all if there are none.
-    watches: Option<BTreeSet<String>>,
-    lost: u64,
-    is_given_up: bool,
-    wake: UnixStream,
-}
-
-impl Queue {
-    fn say(&mut self, what: Next) {
-        self.control_bytes += match &what {
-            Next::Text(text) => text.len(),
-            Next::Bytes(bytes) => bytes.len(),
-        };
-        self.is_given_up |= self.control_bytes > CONTROL_BYTES_MAX;
-        if self.is_given_up {
-            self.control.clear();
-            self.data.clear();
-        } else {
-            self.control.push_back(what);
-        }
-        self.wake();
-    }
-
-    /// Adds a sample, instead of the oldest ones if there is no room.
-    fn sample(&mut self, channel: u32, sample: &Sample) {
-        let Some(subscriptions) = self.listens.get(&channel) else {
-            return;
-        };
-        for &subscription in subscriptions {
-            self.data_bytes += sample.bytes.len();
-            self.data.push_back((subscription, sample.clone()));
-        }
-        while self.data_bytes > DATA_BYTES_MAX && self.data.len() > 1 {
-            if let Some((_, old)) = self.data.pop_front() {
-                self.data_bytes -= old.bytes.len();
-                self.lost += 1;
-            }
-        }
-        self.wake();
-    }
-
-    fn wake(&mut self) {
-        // A full pipe wakes as well.
-        let _ = self.wake.write(&[0]);
-    }
-
-    fn forget(&mut self, channel: u32) {
-        for subscription in self.listens.remove(&channel).unwrap_or_default() {
-            self.subscriptions.remove(&subscription);
-        }
-    }
 }
 
 #[derive(Default)]
@@ -113,10 +40,14 @@ struct State {
     schemas: HashMap<u16, (String, String)>,
     /// What the first channel of this tree has for a number.
     base: u32,
-    statuses: BTreeMap<String, String>,
+    /// What is wrong, by the id of its status.
+    statuses: BTreeMap<String, (Weight, String)>,
     clients: HashMap<ClientId, Queue>,
     services: BTreeSet<String>,
+    /// What those who watch it know.
     graph: Graph,
+    /// It may be another one by now.
+    is_dirty: bool,
     next_client: ClientId,
     parameters: BTreeMap<String, Value>,
 }
@@ -135,7 +66,7 @@ impl Hub {
     pub fn offer(&self, services: &[&str]) {
         let mut state = self.lock();
         state.services = services.iter().map(|name| (*name).to_owned()).collect();
-        state.redraw();
+        state.is_dirty = true;
     }
 
     /// Takes what a recording would have of one look at the tree.
@@ -169,47 +100,44 @@ impl Hub {
             match entry {
                 Entry::Fault(known, _, errno, reason) => {
                     let text = format!("{}: {reason} (errno {errno})", known.node.path);
-                    state.fault(&known.node.path, text);
+                    state.fault(&id_of(&known.node.path), Weight::Warning, text);
                 }
-                Entry::Sample(known, ..) => state.recover(&known.node.path),
+                Entry::Sample(known, ..) => state.recover(&id_of(&known.node.path)),
                 Entry::Node(_) | Entry::Line(..) | Entry::Attachment(..) | Entry::Facts(..) => {}
             }
+        }
+    }
+
+    /// Something of the tree cannot be told; of a tree the first one is.
+    pub fn failed(&self, why: &str) {
+        let mut state = self.lock();
+        if !state.statuses.contains_key(BRIDGE) {
+            state.fault(BRIDGE, Weight::Error, why.to_owned());
         }
     }
 
     /// The tree is gone: so is all that was told of it.
     pub fn gone(&self) {
         let mut state = self.lock();
-        let old: Vec<u32> = state.channels.keys().copied().collect();
-        state.base = state.base.wrapping_add(1 << 16);
-        state.channels.clear();
-        state.schemas.clear();
-        state.parameters.clear();
-        let nodes: Vec<String> = state.statuses.keys().cloned().collect();
-        nodes.iter().for_each(|node| state.recover(node));
-        for queue in state.clients.values_mut() {
-            old.iter().for_each(|channel| queue.forget(*channel));
-            if !old.is_empty() {
-                queue.say(Next::Text(protocol::unadvertise(&old)));
-            }
-            let text = protocol::status(Weight::Error, "the robot is gone", Some("robot"));
-            queue.say(Next::Text(text));
-        }
-        state.redraw();
+        state.clear();
+        let ids: Vec<String> = state.statuses.keys().cloned().collect();
+        ids.iter().for_each(|id| state.recover(id));
+        state.fault(ROBOT, Weight::Error, "the robot is gone".to_owned());
     }
 
     /// It is there again.
     pub fn back(&self) {
-        for queue in self.lock().clients.values_mut() {
-            queue.say(Next::Text(protocol::remove_status(&["robot"])));
-        }
+        self.lock().recover(ROBOT);
     }
 
-    /// What time it is, for all.
+    /// What time it is, for all. With it comes what has become of the graph.
     pub fn beat(&self, now_ns: u64) {
-        for queue in self.lock().clients.values_mut() {
-            queue.time = Some(now_ns);
-            queue.wake();
+        let mut state = self.lock();
+        for queue in state.clients.values_mut() {
+            queue.time(now_ns);
+        }
+        if state.clients.values().any(|queue| queue.watches_graph) {
+            state.redraw();
         }
     }
 
@@ -218,32 +146,14 @@ impl Hub {
         let mut state = self.lock();
         let id = state.next_client;
         state.next_client += 1;
-        let mut queue = Queue {
-            name: name.to_owned(),
-            control: VecDeque::new(),
-            control_bytes: 0,
-            data: VecDeque::new(),
-            data_bytes: 0,
-            time: None,
-            listens: HashMap::new(),
-            subscriptions: HashMap::new(),
-            watches_graph: false,
-            watches: None,
-            lost: 0,
-            is_given_up: false,
-            wake,
-        };
+        let mut queue = Queue::new(name, wake);
         queue.say(Next::Text(info));
         let channels = state.channels.iter().map(|(id, one)| (*id, &one.about));
         queue.say(Next::Text(protocol::advertise(channels)));
-        if may_act {
-            queue.say(Next::Text(protocol::advertise_services(
-                &super::robot::SERVICES,
-            )));
-        }
-        for (node, text) in &state.statuses {
-            let text = protocol::status(Weight::Warning, text, Some(node));
-            queue.say(Next::Text(text));
+        let services = robot::services(may_act);
+        queue.say(Next::Text(protocol::advertise_services(services)));
+        for (id, (weight, text)) in &state.statuses {
+            queue.say(Next::Text(protocol::status(*weight, text, Some(id))));
         }
         state.clients.insert(id, queue);
         id
@@ -252,8 +162,7 @@ impl Hub {
     /// It has gone.
     pub fn leave(&self, id: ClientId) {
         let mut state = self.lock();
-        state.clients.remove(&id);
-        state.redraw();
+        state.is_dirty |= state.clients.remove(&id).is_some();
     }
 
     /// What goes to it next; None if there is nothing, and an error if it was given up.
@@ -261,33 +170,10 @@ impl Hub {
     /// # Errors
     /// It has not read what it has asked for.
     pub fn next(&self, id: ClientId) -> Result<Option<Next>, GivenUp> {
-        let mut state = self.lock();
-        let Some(queue) = state.clients.get_mut(&id) else {
-            return Err(GivenUp);
-        };
-        if queue.is_given_up {
-            return Err(GivenUp);
+        match self.lock().clients.get_mut(&id) {
+            Some(queue) => queue.next(),
+            None => Err(GivenUp),
         }
-        if let Some(next) = queue.control.pop_front() {
-            queue.control_bytes -= match &next {
-                Next::Text(text) => text.len(),
-                Next::Bytes(bytes) => bytes.len(),
-            };
-            return Ok(Some(next));
-        }
-        if let Some(now_ns) = queue.time.take() {
-            return Ok(Some(Next::Bytes(protocol::time(now_ns))));
-        }
-        if queue.lost > 0 {
-            let text = format!("this client is slow: {} samples are lost", queue.lost);
-            queue.lost = 0;
-            let text = protocol::status(Weight::Warning, &text, Some("slow"));
-            return Ok(Some(Next::Text(text)));
-        }
-        Ok(queue.data.pop_front().map(|(subscription, sample)| {
-            queue.data_bytes -= sample.bytes.len();
-            Next::Bytes(protocol::message(subscription, sample.at_ns, &sample.bytes))
-        }))
     }
 
     /// An answer for one client.
@@ -307,83 +193,59 @@ impl Hub {
             return;
         };
         for &(subscription, channel) in pairs {
-            let why = match channels.get(&channel) {
-                _ if queue.subscriptions.len() >= SUBSCRIPTIONS_MAX => "too many subscriptions",
-                _ if queue.subscriptions.contains_key(&subscription) => {
-                    "a subscription with this number is there"
-                }
-                None => "there is no channel with this number",
-                Some(one) => {
-                    queue.subscriptions.insert(subscription, channel);
-                    queue.listens.entry(channel).or_default().push(subscription);
-                    if let Some(newest) = &one.newest {
-                        queue.data_bytes += newest.bytes.len();
-                        queue.data.push_back((subscription, newest.clone()));
-                        queue.wake();
-                    }
-                    continue;
-                }
+            let done = match channels.get(&channel) {
+                Some(one) => queue.subscribe(subscription, channel, one.newest.as_ref()),
+                None => Err("there is no channel with this number"),
             };
-            let text = format!("subscription {subscription} to channel {channel}: {why}");
-            queue.say(Next::Text(protocol::status(Weight::Warning, &text, None)));
+            if let Err(why) = done {
+                let text = format!("subscription {subscription} to channel {channel}: {why}");
+                queue.warn(&text);
+            }
         }
-        state.redraw();
+        state.is_dirty = true;
     }
 
     /// It does not any more.
     pub fn unsubscribe(&self, id: ClientId, subscriptions: &[u32]) {
         let mut state = self.lock();
-        let Some(queue) = state.clients.get_mut(&id) else {
-            return;
-        };
-        for subscription in subscriptions {
-            let Some(channel) = queue.subscriptions.remove(subscription) else {
-                continue;
-            };
-            if let Some(all) = queue.listens.get_mut(&channel) {
-                all.retain(|one| one != subscription);
-                if all.is_empty() {
-                    queue.listens.remove(&channel);
-                }
-            }
+        if let Some(queue) = state.clients.get_mut(&id) {
+            queue.unsubscribe(subscriptions);
+            state.is_dirty = true;
         }
-        state.redraw();
     }
 
     /// A client is told of the graph, or not any more.
     pub fn watch_graph(&self, id: ClientId, wants: bool) {
         let mut state = self.lock();
-        let State { clients, graph, .. } = &mut *state;
-        let Some(queue) = clients.get_mut(&id) else {
+        // One who asks again is told all again, and nothing twice.
+        if let Some(queue) = state.clients.get_mut(&id) {
+            queue.watches_graph = false;
+        }
+        if !wants {
             return;
-        };
-        queue.watches_graph = wants;
-        if wants && let Some(text) = protocol::graph_update(&Graph::default(), graph, PUBLISHER) {
-            queue.say(Next::Text(text));
+        }
+        state.redraw();
+        let State { clients, graph, .. } = &mut *state;
+        if let Some(queue) = clients.get_mut(&id) {
+            queue.watches_graph = true;
+            if let Some(text) = protocol::graph_update(&Graph::default(), graph, PUBLISHER) {
+                queue.say(Next::Text(text));
+            }
         }
     }
 
     /// A client is told of changes of parameters, of all if none is named, or not any more.
     pub fn watch_parameters(&self, id: ClientId, names: Vec<String>, wants: bool) {
         if let Some(queue) = self.lock().clients.get_mut(&id) {
-            let names: BTreeSet<String> = names.into_iter().collect();
-            match (wants, &mut queue.watches) {
-                (true, Some(known)) if !known.is_empty() && !names.is_empty() => {
-                    known.extend(names)
-                }
-                (true, watches) => *watches = Some(names),
-                (false, Some(known)) if !names.is_empty() && !known.is_empty() => {
-                    known.retain(|name| !names.contains(name));
-                }
-                (false, watches) => *watches = None,
-            }
+            queue.watch(names, wants);
         }
     }
 
     /// Whether anybody wants to hear of parameters.
     pub fn has_watchers(&self) -> bool {
         let state = self.lock();
-        state.clients.values().any(|queue| queue.watches.is_some())
+        let mut clients = state.clients.values();
+        clients.any(|queue| queue.watches != Watches::None)
     }
 
     /// The parameters as they are: who wants to hear of a change does.
@@ -398,8 +260,9 @@ impl Hub {
             |(name, value): &&(String, Option<Value>)| parameters.get(name) != value.as_ref();
         let mut changed: Vec<(String, Option<Value>)> =
             all.iter().filter(is_new).cloned().collect();
+        let names: BTreeSet<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
         let left = parameters.keys();
-        let left = left.filter(|name| !all.iter().any(|(one, _)| one == *name));
+        let left = left.filter(|name| !names.contains(name.as_str()));
         changed.extend(left.map(|name| (name.clone(), None)));
         if changed.is_empty() {
             return;
@@ -411,11 +274,7 @@ impl Hub {
             };
         }
         for queue in clients.values_mut() {
-            let Some(names) = &queue.watches else {
-                continue;
-            };
-            let wanted = changed.iter();
-            let wanted = wanted.filter(|(name, _)| names.is_empty() || names.contains(name));
+            let wanted = changed.iter().filter(|(name, _)| queue.watches.has(name));
             let wanted: Vec<_> = wanted.cloned().collect();
             if !wanted.is_empty() {
                 queue.say(Next::Text(protocol::parameter_values(&wanted, None)));
@@ -424,9 +283,10 @@ impl Hub {
     }
 }
 
-/// A client does not read what it has asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GivenUp;
+/// The id of the status of a node, which is that of no other status.
+fn id_of(node: &str) -> String {
+    format!("node:{node}")
+}
 
 impl State {
     /// A channel that is new: its number.
@@ -448,7 +308,7 @@ impl State {
         if let Some(former) = former.filter(|former| *former != number) {
             self.channels.remove(&former);
             for queue in self.clients.values_mut() {
-                queue.forget(former);
+                queue.forget(&[former]);
                 queue.say(Next::Text(protocol::unadvertise(&[former])));
             }
         }
@@ -482,7 +342,7 @@ impl State {
             queue.say(Next::Text(text.clone()));
         }
         new.clear();
-        self.redraw();
+        self.is_dirty = true;
     }
 
     fn message(&mut self, id: u16, at_ns: u64, bytes: Vec<u8>) {
@@ -500,27 +360,45 @@ impl State {
         channel.newest = Some(sample);
     }
 
-    fn fault(&mut self, node: &str, text: String) {
-        if self.statuses.get(node) == Some(&text) {
+    /// Channels and parameters are gone, and later ones have other numbers.
+    fn clear(&mut self) {
+        let old: Vec<u32> = self.channels.keys().copied().collect();
+        self.base = self.base.wrapping_add(1 << 16);
+        self.channels.clear();
+        self.schemas.clear();
+        self.parameters.clear();
+        for queue in self.clients.values_mut() {
+            queue.forget(&old);
+            if !old.is_empty() {
+                queue.say(Next::Text(protocol::unadvertise(&old)));
+            }
+        }
+        self.is_dirty = true;
+    }
+
+    fn fault(&mut self, id: &str, weight: Weight, text: String) {
+        if self.statuses.get(id).is_some_and(|(_, old)| *old == text) {
             return;
         }
         for queue in self.clients.values_mut() {
-            let text = protocol::status(Weight::Warning, &text, Some(node));
-            queue.say(Next::Text(text));
+            queue.say(Next::Text(protocol::status(weight, &text, Some(id))));
         }
-        self.statuses.insert(node.to_owned(), text);
+        self.statuses.insert(id.to_owned(), (weight, text));
     }
 
-    fn recover(&mut self, node: &str) {
-        if self.statuses.remove(node).is_some() {
+    fn recover(&mut self, id: &str) {
+        if self.statuses.remove(id).is_some() {
             for queue in self.clients.values_mut() {
-                queue.say(Next::Text(protocol::remove_status(&[node])));
+                queue.say(Next::Text(protocol::remove_status(&[id])));
             }
         }
     }
 
     /// Tells those who want to know who publishes and who listens.
     fn redraw(&mut self) {
+        if !std::mem::take(&mut self.is_dirty) {
+            return;
+        }
         let topics = self.channels.values();
         let mut graph = Graph {
             topics: topics.map(|one| one.about.topic.clone()).collect(),
@@ -528,8 +406,8 @@ impl State {
             ..Graph::default()
         };
         for queue in self.clients.values() {
-            for channel in queue.listens.keys() {
-                if let Some(one) = self.channels.get(channel) {
+            for channel in queue.listens() {
+                if let Some(one) = self.channels.get(&channel) {
                     let listeners = graph.listened.entry(one.about.topic.clone());
                     listeners.or_default().insert(queue.name.clone());
                 }
@@ -546,124 +424,4 @@ impl State {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn channel(id: u16, topic: &str) -> [Record; 2] {
-        [
-            Record::Schema(id, format!("trik_msgs/msg/T{id}"), "int32 x\n".to_owned()),
-            Record::Channel {
-                id,
-                schema: id,
-                topic: topic.to_owned(),
-                metadata: BTreeMap::new(),
-            },
-        ]
-    }
-
-    fn enter(hub: &Hub) -> (ClientId, UnixStream) {
-        let (wake, woken) = UnixStream::pair().unwrap();
-        wake.set_nonblocking(true).unwrap();
-        (hub.enter("c", "{}".to_owned(), true, wake), woken)
-    }
-
-    fn all(hub: &Hub, id: ClientId) -> Vec<String> {
-        std::iter::from_fn(|| hub.next(id).unwrap())
-            .map(|next| match next {
-                Next::Text(text) => text,
-                Next::Bytes(bytes) => format!("{bytes:?}"),
-            })
-            .collect()
-    }
-
-    #[test]
-    fn a_late_client_gets_the_newest_at_once_and_then_all() {
-        let hub = Hub::default();
-        hub.take(channel(1, "/a").into());
-        hub.take(vec![
-            Record::Message(1, 5, vec![1]),
-            Record::Message(1, 6, vec![2]),
-        ]);
-        let (id, _woken) = enter(&hub);
-        let told = all(&hub, id);
-        assert!(told[1].contains(r#""topic":"/a""#), "{told:?}");
-        hub.subscribe(id, &[(7, 1), (8, 99)]);
-        let told = all(&hub, id);
-        assert!(told[0].contains("no channel"), "{told:?}");
-        assert_eq!(told[1], format!("{:?}", protocol::message(7, 6, &[2])));
-        hub.take(vec![Record::Message(1, 9, vec![3])]);
-        assert_eq!(
-            all(&hub, id),
-            [format!("{:?}", protocol::message(7, 9, &[3]))]
-        );
-        hub.unsubscribe(id, &[7, 8]);
-        hub.take(vec![Record::Message(1, 10, vec![3])]);
-        assert!(all(&hub, id).is_empty());
-    }
-
-    #[test]
-    fn a_slow_client_loses_the_oldest_and_one_that_only_asks_is_given_up() {
-        let hub = Hub::default();
-        hub.take(channel(1, "/a").into());
-        let (slow, _woken) = enter(&hub);
-        let (other, _woken) = enter(&hub);
-        hub.subscribe(slow, &[(1, 1)]);
-        hub.subscribe(other, &[(1, 1)]);
-        all(&hub, other);
-        let size = DATA_BYTES_MAX / 4;
-        for at in 0..10 {
-            hub.take(vec![Record::Message(1, at, vec![0; size])]);
-            assert_eq!(all(&hub, other).len(), 1);
-        }
-        let told = all(&hub, slow);
-        assert!(told.iter().any(|one| one.contains("6 samples are lost")));
-        let last = told.last().unwrap();
-        assert!(
-            last.starts_with("[1, 1, 0, 0, 0, 9, 0,"),
-            "the newest is there"
-        );
-        for _ in 0..CONTROL_BYTES_MAX / 1000 + 1 {
-            hub.say(slow, Next::Text("x".repeat(1000)));
-        }
-        assert!(hub.next(slow).is_err());
-        assert!(hub.next(other).is_ok());
-    }
-
-    #[test]
-    fn a_robot_that_is_gone_takes_its_channels_with_it() {
-        let hub = Hub::default();
-        hub.take(channel(1, "/a").into());
-        let (id, _woken) = enter(&hub);
-        hub.watch_graph(id, true);
-        hub.subscribe(id, &[(1, 1)]);
-        let told = all(&hub, id).concat();
-        assert!(told.contains(r#""subscriberIds":["c"]"#), "{told}");
-        hub.gone();
-        let told = all(&hub, id).concat();
-        assert!(told.contains(r#""channelIds":[1]"#) && told.contains(r#""removedTopics":["/a"]"#));
-        hub.back();
-        hub.take(channel(1, "/a").into());
-        let told = all(&hub, id).concat();
-        assert!(told.contains(r#""id":65537"#), "{told}");
-        hub.take(vec![Record::Message(1, 5, vec![1])]);
-        assert!(all(&hub, id).is_empty(), "nobody has subscribed to it");
-    }
-
-    #[test]
-    fn changes_of_parameters_are_told_to_those_who_want_them() {
-        let hub = Hub::default();
-        let (id, _woken) = enter(&hub);
-        all(&hub, id);
-        let value = |number: i32| vec![("a".to_owned(), Some(Value::from(number)))];
-        hub.parameters(&value(1));
-        assert!(!hub.has_watchers() && all(&hub, id).is_empty());
-        hub.watch_parameters(id, vec!["a".to_owned(), "b".to_owned()], true);
-        hub.parameters(&value(1));
-        assert!(all(&hub, id).is_empty(), "it is as it was");
-        hub.parameters(&value(2));
-        assert!(all(&hub, id)[0].contains(r#""value":2"#));
-        hub.watch_parameters(id, Vec::new(), false);
-        hub.parameters(&value(3));
-        assert!(all(&hub, id).is_empty());
-    }
-}
+mod tests;

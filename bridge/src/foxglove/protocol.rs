@@ -54,11 +54,11 @@ pub enum Mistake {
 impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotJson => f.write_str("a message is no JSON object with 'op'"),
-            Self::Unknown(op) => write!(f, "nobody here does '{op}'"),
+            Self::NotJson => f.write_str("a message must be a JSON object with 'op'"),
+            Self::Unknown(op) => write!(f, "this server does not know '{op}'"),
             Self::Part(part) => write!(f, "'{part}' is missing in a message, or is no such thing"),
             Self::TooMany => write!(f, "a message names more than {NAMES_MAX} things"),
-            Self::Binary => f.write_str("a binary message is none that is known here"),
+            Self::Binary => f.write_str("an unknown binary message"),
             Self::Arguments(..) => f.write_str("arguments of services are JSON objects"),
         }
     }
@@ -184,16 +184,14 @@ pub struct About {
 }
 
 /// The first message of a connection.
-pub fn server_info(name: &str, session: &str, may_act: bool) -> String {
-    let mut capabilities = vec![
+pub fn server_info(name: &str, session: &str) -> String {
+    let capabilities = [
         "time",
         "connectionGraph",
         "parameters",
         "parametersSubscribe",
+        "services",
     ];
-    if may_act {
-        capabilities.push("services");
-    }
     json!({
         "op": "serverInfo", "name": name, "capabilities": capabilities, "supportedEncodings": [JSON],
         "metadata": {}, "sessionId": session,

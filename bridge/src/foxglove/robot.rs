@@ -3,21 +3,44 @@
 //! Owns their names, and how a file of a tree is one. Parameters are `NODE/poll_ms`, `NODE/polarity`, `NODE/params/NAME`, and
 //! `diagram/NAME` for variables of the diagram that runs. Programs are the business of code that implements [`Programs`].
 
-use crate::limits::{PARAMETER_BYTES_MAX, PARAMETERS_MAX};
+use crate::limits::{PARAMETER_BYTES_MAX, PARAMETERS_MAX, SNAPSHOT_TIME};
 use recorder::nodes;
 use serde_json::Value;
+use std::collections::HashSet;
 use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
-/// Services by their names, with the texts that each one takes.
-pub const SERVICES: [(&str, &[&str]); 2] = [("/stop", &[]), ("/run", &["file"])];
+/// A service: its name, and those of the texts that it takes. Its number is its place, from 1.
+pub type Service = (&'static str, &'static [&'static str]);
+/// All of them.
+pub const SERVICES: [Service; 2] = [("/stop", &[]), ("/run", &["file"])];
+/// The first ones are for everybody: who sees danger may stop the robot, as by its trikd.
+const FOR_ALL: usize = 1;
 /// Files of a node that are parameters.
 const FILES: [&str; 2] = ["poll_ms", "polarity"];
 /// What names of variables begin with.
 const DIAGRAM: &str = "diagram/";
+
+/// The services for a client that may act, or only looks.
+pub fn services(may_act: bool) -> &'static [Service] {
+    match may_act {
+        true => &SERVICES,
+        false => &SERVICES[..FOR_ALL],
+    }
+}
+
+/// Whether the service with this number is for everybody.
+pub fn is_for_all(service: u32) -> bool {
+    usize::try_from(service).is_ok_and(|id| (1..=FOR_ALL).contains(&id))
+}
+
+/// Values of parameters by their names; one that cannot be read has none.
+pub type Parameters = Vec<(String, Option<Value>)>;
 
 /// Why something is not done.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +63,12 @@ impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Absent(name) => write!(f, "{name}: there is no such parameter"),
-            Self::Value(name) => write!(f, "{name}: no number, text or truth"),
+            Self::Value(name) => {
+                write!(
+                    f,
+                    "{name}: the value must be a number, a text, true or false"
+                )
+            }
             Self::Tree(name, why) => write!(f, "{name}: {why}"),
             Self::Program(why) => f.write_str(why),
             Self::Service(id) => write!(f, "there is no service {id}"),
@@ -82,6 +110,8 @@ pub trait Programs: Send + Sync {
 pub struct Robot {
     root: PathBuf,
     programs: Option<Box<dyn Programs>>,
+    /// What was read last, and when.
+    snapshot: Mutex<Option<(Instant, Arc<Parameters>)>>,
 }
 
 impl Robot {
@@ -90,7 +120,12 @@ impl Robot {
         Self {
             root: root.to_owned(),
             programs,
+            snapshot: Mutex::new(None),
         }
+    }
+
+    fn snapshot(&self) -> MutexGuard<'_, Option<(Instant, Arc<Parameters>)>> {
+        self.snapshot.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Paths of the files that are parameters.
@@ -119,8 +154,22 @@ impl Robot {
         all
     }
 
-    /// All parameters with their values.
-    pub fn parameters(&self) -> Vec<(String, Option<Value>)> {
+    /// All parameters with their values, as they were a short time ago at most: those who ask together share one look.
+    pub fn parameters(&self) -> Arc<Parameters> {
+        let mut snapshot = self.snapshot();
+        match &*snapshot {
+            Some((at, all)) if at.elapsed() < SNAPSHOT_TIME => all.clone(),
+            Some(_) | None => {
+                // What changes during the look is not in it.
+                let at = Instant::now();
+                let all = Arc::new(self.read());
+                *snapshot = Some((at, all.clone()));
+                all
+            }
+        }
+    }
+
+    fn read(&self) -> Parameters {
         let files = self.files().into_iter();
         let mut all: Vec<_> = files
             .map(|name| {
@@ -144,18 +193,26 @@ impl Robot {
         }
     }
 
-    /// Gives a parameter a value.
-    ///
-    /// # Errors
-    /// It is not taken.
-    pub fn set(&self, name: &str, value: &Value) -> Result<(), Refused> {
-        if let Some(variable) = name.strip_prefix(DIAGRAM) {
-            return self.programs()?.assign(variable, value);
-        }
+    /// Gives parameters values; those that are not taken, and why.
+    pub fn set(&self, values: &[(String, Value)]) -> Vec<Refused> {
         // Only what is in the list: a name of a stranger is no path.
-        if !self.files().iter().any(|one| one == name) {
-            return Err(Refused::Absent(name.to_owned()));
-        }
+        let known: HashSet<String> = match values.iter().all(|(name, _)| name.starts_with(DIAGRAM))
+        {
+            true => HashSet::new(),
+            false => self.files().into_iter().collect(),
+        };
+        let one = |(name, value): &(String, Value)| match name.strip_prefix(DIAGRAM) {
+            Some(variable) => self.programs()?.assign(variable, value),
+            None if known.contains(name) => self.write(name, value),
+            None => Err(Refused::Absent(name.clone())),
+        };
+        let refused = values.iter().filter_map(|pair| one(pair).err()).collect();
+        // The next look sees what was taken.
+        *self.snapshot() = None;
+        refused
+    }
+
+    fn write(&self, name: &str, value: &Value) -> Result<(), Refused> {
         let text = match value {
             Value::Bool(truth) => u8::from(*truth).to_string(),
             Value::Number(number) => number.to_string(),
@@ -230,6 +287,7 @@ fn read(path: &Path, is_float: bool) -> io::Result<Value> {
 mod tests {
     use super::*;
     use std::fs;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn a_value_is_a_number_or_a_text() {
@@ -262,14 +320,19 @@ mod tests {
         }
         fs::write(root.join("secret"), "x").unwrap();
         let robot = Robot::new(root, None);
-        assert_eq!(
-            robot.parameters(),
-            [
+        let set = |name: &str, value: Value| robot.set(&[(name.to_owned(), value)]);
+        let are = |gain: f64| {
+            vec![
                 ("a/poll_ms".to_owned(), Some(Value::from(20))),
-                ("a/params/gain".to_owned(), Some(Value::from(1.5))),
+                ("a/params/gain".to_owned(), Some(Value::from(gain))),
             ]
-        );
-        robot.set("a/params/gain", &Value::from(2)).unwrap();
+        };
+        let first = robot.parameters();
+        assert_eq!(*first, are(1.5));
+        // What is set by a client is there at once.
+        let both = ["a/params/gain", "b"].map(|name| (name.to_owned(), Value::from(2)));
+        assert_eq!(robot.set(&both), [Refused::Absent("b".to_owned())]);
+        assert_eq!(*robot.parameters(), are(2.0));
         assert_eq!(
             fs::read_to_string(root.join("a/params/gain")).unwrap(),
             "2\n"
@@ -282,14 +345,14 @@ mod tests {
             "/etc/passwd",
             "",
         ] {
-            let refused = robot.set(name, &Value::from(1));
-            assert_eq!(refused, Err(Refused::Absent(name.to_owned())));
+            let refused = set(name, Value::from(1));
+            assert_eq!(refused, [Refused::Absent(name.to_owned())]);
         }
-        let none = robot.set("a/poll_ms", &Value::Null);
-        assert_eq!(none, Err(Refused::Value("a/poll_ms".to_owned())));
+        let none = set("a/poll_ms", Value::Null);
+        assert_eq!(none, [Refused::Value("a/poll_ms".to_owned())]);
         assert!(matches!(
-            robot.set("diagram/x", &Value::from(1)),
-            Err(Refused::Program(_))
+            set("diagram/x", Value::from(1))[..],
+            [Refused::Program(_)]
         ));
         robot.call(1, &Value::Null).unwrap();
         assert_eq!(fs::read_to_string(root.join("stop")).unwrap(), "1\n");
@@ -300,5 +363,58 @@ mod tests {
         for id in [0, 3, u32::MAX] {
             assert_eq!(robot.call(id, &Value::Null), Err(Refused::Service(id)));
         }
+    }
+
+    /// Programs that count how often they are asked.
+    #[derive(Default)]
+    struct Counted(AtomicUsize);
+
+    impl Programs for Arc<Counted> {
+        fn variables(&self) -> Vec<(String, Value)> {
+            let count = self.0.fetch_add(1, Ordering::AcqRel);
+            vec![("n".to_owned(), Value::from(count))]
+        }
+
+        fn rest(&self) {}
+
+        fn assign(&self, _: &str, _: &Value) -> Result<(), Refused> {
+            Ok(())
+        }
+
+        fn run(&self, _: &str) -> Result<(), Refused> {
+            Ok(())
+        }
+
+        fn stop(&self) -> Result<(), Refused> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn those_who_ask_together_share_one_look_and_a_change_makes_another() {
+        let directory = tempfile::tempdir().unwrap();
+        let counted = Arc::new(Counted::default());
+        let robot = Robot::new(directory.path(), Some(Box::new(counted.clone())));
+        let begin = Instant::now();
+        let all: Vec<_> = (0..100).map(|_| robot.parameters()).collect();
+        let looks = counted.0.load(Ordering::Acquire) as u128;
+        let most = begin.elapsed().as_millis() / SNAPSHOT_TIME.as_millis() + 1;
+        assert!((1..=most).contains(&looks), "{looks} looks of {most}");
+        assert!(Arc::ptr_eq(&all[0], &all[1]) || looks > 1);
+        assert!(
+            robot
+                .set(&[("diagram/n".to_owned(), Value::from(1))])
+                .is_empty()
+        );
+        assert_ne!(robot.parameters(), all[99]);
+    }
+
+    #[test]
+    fn only_a_stop_is_for_everybody() {
+        assert_eq!(services(false), [("/stop", &[] as &[&str])]);
+        assert_eq!(services(true), SERVICES);
+        let free: Vec<u32> = (0..5).filter(|id| is_for_all(*id)).collect();
+        assert_eq!(free, [1]);
+        assert!(!is_for_all(u32::MAX));
     }
 }

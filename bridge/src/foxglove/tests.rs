@@ -3,10 +3,10 @@
 use super::client::House;
 use super::robot::Robot;
 use super::{Server, serve};
-use crate::limits::{CLIENTS_MAX, DATA_BYTES_MAX, MESSAGE_BYTES_MAX, MISTAKES_MAX};
+use crate::limits::{CLIENTS_MAX, DATA_BYTES_MAX, HANDSHAKE_TIME, MESSAGE_BYTES_MAX, MISTAKES_MAX};
 use journal::node::Node;
 use recorder::entry::{Entry, Known};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::sync::Arc;
@@ -61,11 +61,28 @@ const SDK: [(&str, &str); 1] = [("Sec-WebSocket-Protocol", "x, foxglove.sdk.v1")
 
 /// The next text that has this in it.
 fn until(socket: &mut Socket, part: &str) -> String {
+    let begin = Instant::now();
     loop {
+        assert!(begin.elapsed() < LONG, "{part} does not come");
         if let Message::Text(text) = socket.read().unwrap()
             && text.as_str().contains(part)
         {
             return text.as_str().to_owned();
+        }
+    }
+}
+
+/// The server ends this connection.
+fn ends(socket: &mut Socket) {
+    let begin = Instant::now();
+    loop {
+        assert!(begin.elapsed() < LONG, "a connection does not end");
+        match socket.read() {
+            Ok(_) => {}
+            Err(Error::Io(why)) if why.kind() == ErrorKind::WouldBlock => {
+                panic!("a connection is silent, and does not end")
+            }
+            Err(_) => return,
         }
     }
 }
@@ -117,6 +134,7 @@ fn hostile_bytes_end_their_own_connection_alone() {
     let mut good = connect(at, &SDK).unwrap();
     until(&mut good, "serverInfo");
     // A handshake that never ends, rubbish instead of one, and rubbish behind one.
+    let begin = Instant::now();
     let mut slow = TcpStream::connect(at).unwrap();
     slow.write_all(b"GET / HTTP/1.1\r\nHost:").unwrap();
     for bytes in [&[0xff_u8; 4096][..], b"\0", b"GET / HTTP/1.1\r\n\r\n"] {
@@ -140,9 +158,7 @@ fn hostile_bytes_end_their_own_connection_alone() {
     // What is too long is not read.
     let mut long = connect(at, &SDK).unwrap();
     let _ = long.send(Message::Text("x".repeat(MESSAGE_BYTES_MAX + 1).into()));
-    while let Ok(message) = long.read() {
-        assert!(!message.is_close() || matches!(message, Message::Close(_)));
-    }
+    ends(&mut long);
     // One that says nothing but mistakes is told of them, and let go.
     let mut wrong = connect(at, &SDK).unwrap();
     for _ in 0..=MISTAKES_MAX {
@@ -150,11 +166,19 @@ fn hostile_bytes_end_their_own_connection_alone() {
             break;
         }
     }
-    until(&mut wrong, "no JSON object");
-    while wrong.read().is_ok() {}
+    until(&mut wrong, "must be a JSON object");
+    ends(&mut wrong);
+    // Its time is over.
+    slow.set_read_timeout(Some(LONG)).unwrap();
+    let left = slow.read_to_end(&mut Vec::new());
+    assert!(
+        !matches!(&left, Err(why) if why.kind() == ErrorKind::WouldBlock),
+        "a handshake that does not end is waited for"
+    );
+    assert!(begin.elapsed() >= HANDSHAKE_TIME);
     // Others have noticed nothing.
     let sample = Entry::Sample(node("a", "u8 x"), 5, vec![7].into());
-    server.take(&[sample]).unwrap();
+    server.take(&[sample]);
     let told = until(&mut good, r#""topic":"/a""#);
     assert!(
         told.contains("trik_msgs/msg/A") && told.contains("uint8 x"),
@@ -168,12 +192,12 @@ fn a_client_that_does_not_read_loses_samples_and_delays_nobody() {
     let mut server = server(directory.path());
     let at = server.address();
     let known = node("picture", "u8 x 100000");
-    server.take(&[Entry::Node(known.clone())]).unwrap();
+    server.take(&[Entry::Node(known.clone())]);
     let picture = |number: u8| {
         let bytes: Arc<[u8]> = vec![number; 100_000].into();
         Entry::Sample(known.clone(), u64::from(number), bytes)
     };
-    server.take(&[picture(0)]).unwrap();
+    server.take(&[picture(0)]);
     let mut clients = [connect(at, &SDK).unwrap(), connect(at, &SDK).unwrap()];
     for client in &mut clients {
         let told = until(client, r#""topic":"/picture""#);
@@ -199,14 +223,18 @@ fn a_client_that_does_not_read_loses_samples_and_delays_nobody() {
     // Far more than one queue and the buffers of a socket hold.
     const { assert!(200 * 100_000 > 4 * DATA_BYTES_MAX) };
     for number in 1..=200 {
-        server.take(&[picture(number)]).unwrap();
+        server.take(&[picture(number)]);
         assert_eq!(next(&mut fast), number);
     }
     // The slow one still gets the newest, and hears how much it has lost.
     let mut seen = Vec::new();
     let mut lost = String::new();
-    while seen.last() != Some(&200) {
+    let mut is_taken_back = false;
+    let begin = Instant::now();
+    while seen.last() != Some(&200) || !is_taken_back {
+        assert!(begin.elapsed() < LONG, "{} came", seen.len());
         match slow.read().unwrap() {
+            Message::Text(text) if text.as_str().contains("removeStatus") => is_taken_back = true,
             Message::Binary(bytes) if bytes[0] == 1 => seen.push(*bytes.last().unwrap()),
             Message::Text(text) if text.as_str().contains("slow") => {
                 lost = text.as_str().to_owned()
@@ -224,4 +252,21 @@ fn a_client_that_does_not_read_loses_samples_and_delays_nobody() {
         seen.is_sorted() && lost.contains("samples are lost"),
         "{lost}"
     );
+}
+
+#[test]
+fn a_node_that_cannot_be_told_is_reported_and_hides_no_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut server = server(directory.path());
+    let mut client = connect(server.address(), &SDK).unwrap();
+    let wrong = Arc::new(Known {
+        number: 2,
+        node: Node::sensor("wrong", "no format at all"),
+    });
+    let wrong = Entry::Sample(wrong, 5, vec![7].into());
+    let good = Entry::Sample(node("good", "u8 x"), 5, vec![7].into());
+    server.take(&[wrong, good]);
+    until(&mut client, r#""topic":"/good""#);
+    let told = until(&mut client, r#""id":"bridge""#);
+    assert!(told.contains("cannot be passed on"), "{told}");
 }

@@ -42,7 +42,7 @@ pub(super) fn serve(args: &FoxgloveArgs) -> Result<u8, Refusal> {
     let address = SocketAddr::new(args.address, args.port);
     let robot = Robot::new(&root, programs);
     let mut server = ::bridge::foxglove::serve(address, house, robot, PROGRAM).map_err(refused)?;
-    server.take(&follow.beginning()).map_err(refused)?;
+    server.take(&follow.beginning());
     say(&format!(
         "{shown}: ws://{}; Ctrl-C ends it\n",
         server.address()
@@ -51,14 +51,14 @@ pub(super) fn serve(args: &FoxgloveArgs) -> Result<u8, Refusal> {
     loop {
         entries.clear();
         match follow.look(&mut entries) {
-            Change::Same => server.take(&entries).map_err(refused)?,
+            Change::Same => server.take(&entries),
             Change::Gone => {
                 server.gone().map_err(refused)?;
                 say("the tree is gone; waiting for it\n")?;
             }
             Change::Back => {
                 server.back();
-                server.take(&follow.beginning()).map_err(refused)?;
+                server.take(&follow.beginning());
                 say("the tree is there again\n")?;
             }
         }
