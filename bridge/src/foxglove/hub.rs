@@ -16,7 +16,7 @@ use recorder::entry::Entry;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::os::unix::net::UnixStream;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The name under which all is published.
 const PUBLISHER: &str = "trikfs";

@@ -248,12 +248,16 @@ fn a_client_of_foxglove_sees_a_robot_changes_it_and_sees_it_go_and_come_back() {
     changes_parameters(&mut client, &reachable);
     runs_programs(&mut client, &reachable);
     client.order("text nothing");
+    client.tells(&[r#""what":"status""#, "must be a JSON object with 'op'"]);
     client.order("bytes ffff");
+    client.tells(&[r#""what":"status""#, "an unknown binary message"]);
     let root = reachable.robot.root.clone();
     drop(reachable);
     client.tells(&[r#""what":"gone""#, "/motors/M3"]);
     client.tells(&[r#""what":"status""#, "the robot is gone"]);
+    // It answers without a robot too.
     client.order("text again");
+    client.tells(&[r#""what":"status""#, "must be a JSON object with 'op'"]);
     let back = Robot::start(home.clone(), &[root.to_str().expect("UTF-8")]);
     client.tells(&[r#""what":"removeStatus""#, "robot"]);
     client.tells(&[r#""topic":"/battery""#]);

@@ -4,6 +4,7 @@ use super::*;
 use crate::limits::{CONTROL_BYTES_MAX, DATA_BYTES_MAX};
 use journal::node::Node;
 use recorder::entry::Known;
+use std::sync::Arc;
 
 fn channel(id: u16, topic: &str) -> [Record; 2] {
     [
