@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Duration;
 
 /// A bridge that serves, and is asked to end by SIGINT.
@@ -57,6 +57,14 @@ impl Bridge {
         let pid = Pid::from_raw(i32::try_from(self.child.id()).expect("a pid"));
         kill(pid, Signal::SIGINT).expect("SIGINT");
         assert!(self.child.wait().expect("an end").success());
+    }
+}
+
+/// One that a failed test leaves does not outlive it.
+impl Drop for Bridge {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
@@ -149,9 +157,18 @@ impl Client {
     fn tells(&mut self, parts: &[&str]) -> String {
         let mut found = None;
         eventually(&format!("{parts:?} from a client"), || {
-            self.told.extend(self.lines.try_iter());
+            let over = loop {
+                match self.lines.try_recv() {
+                    Ok(line) => self.told.push(line),
+                    Err(why) => break why == TryRecvError::Disconnected,
+                }
+            };
             let has_all = |line: &&String| parts.iter().all(|part| line.contains(part));
             found = self.told.iter().find(has_all).cloned();
+            assert!(
+                found.is_some() || !over,
+                "the client ended before {parts:?}"
+            );
             found.is_some()
         });
         found.unwrap_or_default()
