@@ -199,7 +199,10 @@ impl Machine {
             return self.status();
         }
         self.plan(Work::Events);
-        self.plan(Work::Beginning);
+        // What is kept in a later step than the first begins in one after that.
+        if self.began.is_none() || self.kept.is_some() {
+            self.plan(Work::Beginning);
+        }
         match self.began {
             None => self.begin(now, env),
             Some(began) => self.let_pass(now, began),

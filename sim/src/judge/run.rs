@@ -336,19 +336,18 @@ impl<'a> Run<'a> {
 
     /// Tells what is new among the errors of a program.
     pub fn hear(&mut self, now: u32, errors: &[Problem]) {
-        self.tell(
-            now,
-            Level::Error,
-            errors.get(self.heard..).unwrap_or_default(),
-        );
-        self.heard = self.heard.max(errors.len());
+        if errors.len() > self.heard {
+            self.tell(now, Level::Error, &errors[self.heard..]);
+            self.heard = errors.len();
+        }
     }
 
     /// Tells what is new among its warnings.
     pub fn hear_warnings(&mut self, now: u32, warnings: &[Problem]) {
-        let new = warnings.get(self.warned..).unwrap_or_default();
-        self.tell(now, Level::Warning, new);
-        self.warned = self.warned.max(warnings.len());
+        if warnings.len() > self.warned {
+            self.tell(now, Level::Warning, &warnings[self.warned..]);
+            self.warned = warnings.len();
+        }
     }
 
     fn tell(&mut self, now: u32, level: Level, problems: &[Problem]) {

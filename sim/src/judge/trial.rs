@@ -106,7 +106,9 @@ impl<'a> Trial<'a> {
                 return false;
             }
         }
-        if let Some(robot) = self.arena.robot_mut(0) {
+        if !self.deeds.is_empty()
+            && let Some(robot) = self.arena.robot_mut(0)
+        {
             hands::act(&mut self.deeds, self.now, robot);
         }
         true

@@ -70,11 +70,7 @@ impl Machine {
             Work::Tick { elapsed } => {
                 if elapsed > 0 {
                     self.hear_announced(env);
-                    self.plan(Work::Sensors { elapsed });
-                    self.plan(Work::Clocks {
-                        after: None,
-                        elapsed,
-                    });
+                    self.tick(elapsed, env);
                 }
             }
             Work::Clocks { after, elapsed } => self.next_clocks(after, elapsed, env),
@@ -86,19 +82,17 @@ impl Machine {
                     }
                 }
             }
-            Work::Sensors { elapsed } => {
-                if self.sensors.are_due(elapsed) {
-                    self.sensors.refresh(env.brick);
-                    self.answer_waits(env);
-                }
-            }
+            Work::Sensors { elapsed } => self.sense(elapsed, env),
             Work::Beginning => self.beginning(env),
             Work::Begun => self.is_beginning = false,
             Work::Events => {
-                self.plan(Work::Due {
-                    count: self.deferred.len(),
-                });
-                self.plan(Work::Posted);
+                let count = self.deferred.len();
+                if self.posted.is_empty() && self.has_nothing_between() {
+                    self.due(count);
+                } else {
+                    self.plan(Work::Due { count });
+                    self.plan(Work::Posted);
+                }
             }
             Work::Posted => {
                 if let Some(node) = self.posted.pop_front() {
@@ -106,13 +100,7 @@ impl Machine {
                     self.done(node);
                 }
             }
-            Work::Due { count } => {
-                // What the posted ones put off for a turn waits for the next step; but the original's simulator comes
-                // through its event loop once more after each third step, and there it does not wait.
-                let is_turn = !self.options.in_turns || self.now.is_multiple_of(TURN_MS);
-                let left = if is_turn { self.deferred.len() } else { count };
-                self.plan(Work::Turn { left });
-            }
+            Work::Due { count } => self.due(count),
             Work::Turn { left } => self.next_of_turn(left),
             Work::Follow { mut blocks } => {
                 if let Some(node) = blocks.pop_front() {
@@ -143,14 +131,71 @@ impl Machine {
         }
     }
 
-    fn next_clocks(&mut self, mut after: Option<Node>, elapsed: u32, env: &mut Env<'_>) {
-        while let Some(node) = self.next_clock(after) {
-            after = Some(node);
-            if self.clock_is_due(node, elapsed) {
-                self.plan(Work::Clocks { after, elapsed });
+    /// Whether a piece that follows another would come right after it: no thread is to run before, and nobody asks to hold
+    /// the machine there. Most steps of a program find nothing to do; then the pieces of a step need not be planned to be
+    /// worked off at once, which costs more than the pieces themselves.
+    fn has_nothing_between(&self) -> bool {
+        self.active.is_empty() && !self.is_guarded && self.ended.is_none()
+    }
+
+    fn tick(&mut self, elapsed: u32, env: &mut Env<'_>) {
+        if !self.has_nothing_between() {
+            self.plan(Work::Sensors { elapsed });
+            self.plan(Work::Clocks {
+                after: None,
+                elapsed,
+            });
+            return;
+        }
+        match self.due_clock(None, elapsed) {
+            None => self.sense(elapsed, env),
+            Some(node) => {
+                self.plan(Work::Sensors { elapsed });
+                self.plan(Work::Clocks {
+                    after: Some(node),
+                    elapsed,
+                });
                 self.ring(node, env);
-                return;
             }
+        }
+    }
+
+    fn next_clocks(&mut self, after: Option<Node>, elapsed: u32, env: &mut Env<'_>) {
+        if let Some(node) = self.due_clock(after, elapsed) {
+            self.plan(Work::Clocks {
+                after: Some(node),
+                elapsed,
+            });
+            self.ring(node, env);
+        }
+    }
+
+    /// Lets time pass for the clocks after one, up to the first that is due.
+    fn due_clock(&mut self, mut after: Option<Node>, elapsed: u32) -> Option<Node> {
+        loop {
+            after = self.next_clock(after);
+            if self.clock_is_due(after?, elapsed) {
+                return after;
+            }
+        }
+    }
+
+    fn sense(&mut self, elapsed: u32, env: &mut Env<'_>) {
+        if self.sensors.are_due(elapsed) {
+            self.sensors.refresh(env.brick);
+            self.answer_waits(env);
+        }
+    }
+
+    /// What had to wait for a turn begins; so many of them were there before the posted ones.
+    ///
+    /// What the posted ones put off waits for the next step; but the original's simulator comes through its event loop
+    /// once more after each third step, and there it does not wait.
+    fn due(&mut self, count: usize) {
+        let is_turn = !self.options.in_turns || self.now.is_multiple_of(TURN_MS);
+        let left = if is_turn { self.deferred.len() } else { count };
+        if left > 0 || !self.soon.is_empty() {
+            self.plan(Work::Turn { left });
         }
     }
 
@@ -179,7 +224,9 @@ impl Machine {
             _ => self.deferred.pop_front(),
         };
         let Some(next) = next else {
-            self.plan(Work::Soon);
+            if !self.soon.is_empty() {
+                self.plan(Work::Soon);
+            }
             return;
         };
         self.plan(Work::Turn { left: left - 1 });
