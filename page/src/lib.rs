@@ -22,6 +22,8 @@
 
 mod browser;
 pub mod class;
+#[cfg(test)]
+mod client;
 mod configuration;
 mod control;
 mod diagrams;

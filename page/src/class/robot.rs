@@ -49,12 +49,12 @@ pub async fn run(board: Arc<Board>, id: usize, whereabouts: Arc<dyn Whereabouts>
             Err(why) => why,
         };
         board.change(id, |card| lose(card, why));
-        let is_wanted = || board.way(id).filter(|_| board.wants_stop(id));
+        // An order that was not answered stays for the next connection.
+        keep_stop(&board, id);
         tokio::select! {
             () = sleep(wait) => wait = (wait * 2).min(limits::CLASS_LATEST_TIME),
-            // A stop does not wait for that; the order stays for the connection.
-            () = stopped(&board, id) => if let Some(way) = is_wanted() {
-                way.stop.notify_one();
+            // A stop does not wait for that.
+            () = stopped(&board, id) => if keep_stop(&board, id) {
                 sleep(limits::CLASS_SOONEST_TIME).await;
             },
         }
@@ -66,6 +66,15 @@ async fn stopped(board: &Board, id: usize) {
         Some(way) => way.stop.notified().await,
         None => std::future::pending().await,
     }
+}
+
+/// Whether a stop is still to be given, which is then said to who has the connection.
+fn keep_stop(board: &Board, id: usize) -> bool {
+    let way = board.way(id).filter(|_| board.wants_stop(id));
+    if let Some(way) = way {
+        way.stop.notify_one();
+    }
+    way.is_some()
 }
 
 /// What is not known any more of a robot that is gone.
