@@ -73,8 +73,6 @@ pub struct Card {
     pub last: Option<String>,
     /// What it has told of as an error since its last start.
     pub error: Option<String>,
-    /// Volts of its battery, if it tells them.
-    pub battery: Option<String>,
     pub stop: Option<Stop>,
     pub sending: Option<Sending>,
 }
@@ -136,7 +134,6 @@ impl Board {
             runs: None,
             last: None,
             error: None,
-            battery: None,
             stop: None,
             sending: None,
         };

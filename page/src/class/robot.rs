@@ -81,7 +81,6 @@ fn keep_stop(board: &Board, id: usize) -> bool {
 fn lose(card: &mut Card, why: Why) {
     card.reach = Reach::Absent(why);
     card.runs = None;
-    card.battery = None;
     if let Some(sending) = &mut card.sending
         && matches!(sending.stage, Stage::Starts)
     {
@@ -301,7 +300,6 @@ impl<'a> Talk<'a> {
                 card.stop = Some(unrest.map_or(Stop::Rests(ms), Stop::Failed));
             }
             card.last = line("last ").map(short);
-            card.battery = line("battery ").map(short);
             let is_it = |name: &String| runs.as_deref() == Some(name.as_str());
             if let (Some(name), Some(sending)) = (&started, &mut card.sending)
                 && sending.name == *name

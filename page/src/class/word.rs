@@ -158,7 +158,6 @@ pub fn card(id: usize, card: &Card, locale: Locale) -> String {
         "runs": card.runs,
         "last": card.last,
         "error": card.error,
-        "battery": card.battery,
         "stop": card.stop.as_ref().map(stop),
         "sending": card.sending.as_ref().map(|one| sending(one, locale)),
     })
@@ -273,7 +272,6 @@ mod tests {
             runs: Some("a\"b".to_owned()),
             last: None,
             error: None,
-            battery: None,
             stop: Some(Stop::Rests(12)),
             sending: Some(Sending {
                 name: "a.py".to_owned(),

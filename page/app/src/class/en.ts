@@ -53,7 +53,6 @@ export const en = {
   } satisfies Record<Mark, string>,
   runs: (name: string) => `${name} runs`,
   nothingRuns: 'no program runs',
-  battery: (text: string) => `Battery: ${text}`,
   openPage: 'Its page',
   openPageOf: (name: string) => `The page of ${name}`,
   stopAsked: 'is being stopped',

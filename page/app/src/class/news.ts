@@ -33,7 +33,6 @@ export interface Card {
   runs: string | null;
   last: string | null;
   error: string | null;
-  battery: string | null;
   stop: Stop | null;
   sending: Sending | null;
 }

@@ -15,7 +15,6 @@ const BLANK: Card = {
   runs: null,
   last: null,
   error: null,
-  battery: null,
   stop: null,
   sending: null,
 };

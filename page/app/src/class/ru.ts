@@ -52,7 +52,6 @@ export const ru: Words = {
   },
   runs: (name) => `Выполняется ${name}`,
   nothingRuns: 'программа не выполняется',
-  battery: (text) => `Батарея: ${text}`,
   openPage: 'Его страница',
   openPageOf: (name) => `Страница робота ${name}`,
   stopAsked: 'останавливается',

@@ -9,7 +9,6 @@ const card = (change: Partial<Card> = {}): Card => ({
   runs: null,
   last: null,
   error: null,
-  battery: null,
   stop: null,
   sending: null,
   ...change,
