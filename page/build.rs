@@ -23,6 +23,12 @@ const SOURCES: [&str; 10] = [
     "vite.config.js",
 ];
 
+/// How the list of files begins.
+const HEAD: &str = "/// All files of the page.\npub const FILES: &[File] = &[\n";
+/// How the list of those begins that only the page of a class loads.
+const OF_CLASS: &str =
+    "/// Those of the page of a class alone.\npub const OF_CLASS: &[File] = &[\n";
+
 /// Why there is no page. The person who builds can mend each.
 enum NoPage {
     /// Nobody wants it.
@@ -64,7 +70,7 @@ fn main() {
             );
             let why = why.to_string();
             format!(
-                "/// All files of the page.\npub const FILES: &[File] = &[];\n/// Why there are none.\npub const WHY_NOT: &str = {why:?};\n"
+                "{HEAD}];\n{OF_CLASS}];\n/// Why there are none.\npub const WHY_NOT: &str = {why:?};\n"
             )
         }
     };
@@ -174,16 +180,22 @@ fn list(made: &Path) -> io::Result<String> {
         }
     }
     found.sort();
-    let mut text = "/// All files of the page.\npub const FILES: &[File] = &[\n".to_owned();
+    let (mut text, mut of_class) = (HEAD.to_owned(), OF_CLASS.to_owned());
     for path in found {
         let name = path.strip_prefix(made).unwrap_or(&path).with_extension("");
         let name = name.to_string_lossy();
         let kind = kind(&name);
+        let list = match name.starts_with("assets/Class-") {
+            true => &mut of_class,
+            false => &mut text,
+        };
         let _ = writeln!(
-            text,
+            list,
             "    File {{ path: {name:?}, kind: {kind:?}, bytes: include_bytes!({path:?}) }},"
         );
     }
+    text += "];\n";
+    text += &of_class;
     text += "];\n/// Why there are none.\npub const WHY_NOT: &str = \"\";\n";
     Ok(text)
 }

@@ -15,6 +15,13 @@ pub struct File {
 
 include!(concat!(env!("OUT_DIR"), "/files.rs"));
 
+/// The file of a path; the root is the page itself. Those of the page of a class are found for that alone, so that a program
+/// without it does not have them.
+pub fn find_of_class(path: &str) -> Option<&'static File> {
+    let name = path.trim_start_matches('/');
+    find(path).or_else(|| OF_CLASS.iter().find(|file| file.path == name))
+}
+
 /// The file of a path; the root is the page itself.
 pub fn find(path: &str) -> Option<&'static File> {
     let path = match path.trim_start_matches('/') {
@@ -38,7 +45,7 @@ mod tests {
         if std::env::var_os("TRIK_REQUIRE_TOOLS").is_some() {
             assert!(find("/").is_some(), "{WHY_NOT}");
         }
-        for file in FILES {
+        for file in FILES.iter().chain(OF_CLASS) {
             assert!(file.bytes.starts_with(&[0x1f, 0x8b]), "{}", file.path);
         }
         // What is loaded first; an editor and others come when they are opened.
@@ -50,6 +57,10 @@ mod tests {
             .map(|file| file.bytes.len())
             .sum();
         assert!(size <= 250 << 10, "{size} bytes");
-        assert!(find("/none").is_none());
+        assert!(find("/none").is_none() && find_of_class("/none").is_none());
+        assert_eq!(OF_CLASS.is_empty(), FILES.is_empty());
+        for file in OF_CLASS {
+            assert!(find(file.path).is_none() && find_of_class(file.path).is_some());
+        }
     }
 }

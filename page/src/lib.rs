@@ -4,9 +4,10 @@
 //! its tree, its control port, and, for a virtual one, the [`World`] around it. What goes over the control port is passed on and
 //! hardly looked at: the page speaks it as every other client does.
 //!
-//! - `server`, `door`, `route`: the thread, connections, and which address gives what
+//! - `server`, `serving`, `door`, `route`: the page, its thread, connections, and which address gives what
+//! - `class`: the page of many robots, which has an own server
 //! - `seats`: who gets a place among all connections, and who loses one
-//! - `guard`: Host, Origin and the cookie
+//! - `guard`, `gate`: Host, Origin and the cookie, and what all requests pass
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
 //! - `shared`, `control`: what all requests share; one of all browsers drives
@@ -20,6 +21,9 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod browser;
+pub mod class;
+#[cfg(test)]
+mod client;
 mod configuration;
 mod control;
 mod diagrams;
@@ -28,6 +32,7 @@ mod drive;
 pub mod error;
 mod files;
 mod flows;
+mod gate;
 mod guard;
 pub mod limits;
 mod plain;
@@ -36,6 +41,7 @@ mod relay;
 mod route;
 pub mod seats;
 mod server;
+mod serving;
 mod shared;
 mod store;
 mod word;

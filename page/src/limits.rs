@@ -99,3 +99,29 @@ pub const ROWS_MAX: usize = 500;
 pub const CELL_LETTERS: usize = 200;
 /// Bytes of a tuple that it shows.
 pub const CELL_BYTES_MAX: u64 = 1024;
+/// Robots of the page of a class.
+pub const CLASS_ROBOTS_MAX: usize = 64;
+/// Programs that wait to be started on one of them.
+pub const CLASS_RUNS: usize = 8;
+/// How long a connection to one may take.
+pub const CLASS_CONNECT_TIME: Duration = Duration::from_secs(3);
+/// Until one that was lost is looked for again; then twice as long, and so on.
+pub const CLASS_SOONEST_TIME: Duration = Duration::from_millis(500);
+/// Until one is looked for again, at most.
+pub const CLASS_LATEST_TIME: Duration = Duration::from_secs(8);
+/// One that has said nothing for so long is lost; it says something every 3 s.
+pub const CLASS_SILENCE_TIME: Duration = Duration::from_secs(8);
+/// How often one is asked what runs, beside when it has told that something has changed.
+pub const CLASS_LOOK_TIME: Duration = Duration::from_secs(6);
+/// An order to stop is given to a robot that comes back within this time.
+pub const CLASS_STOP_TIME: Duration = Duration::from_secs(60);
+/// How long a file may take to one robot.
+pub const CLASS_UPLOAD_TIME: Duration = Duration::from_secs(300);
+/// Bytes of a file after which it is said how far it is.
+pub const CLASS_PIECE_BYTES: usize = 64 << 10;
+/// Bytes of one message of a robot.
+pub const CLASS_MESSAGE_BYTES_MAX: usize = 1 << 20;
+/// Letters of what a robot says that a card shows.
+pub const CLASS_LETTERS_MAX: usize = 300;
+/// Bytes of the name of a program.
+pub const CLASS_NAME_BYTES_MAX: usize = 200;

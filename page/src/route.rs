@@ -1,30 +1,41 @@
 //! Which address gives what: the page, the socket of a browser, programs, and a plain table for browsers without scripts.
 //!
-//! Owns the addresses, and that nothing is given before `guard` has agreed.
+//! Owns the addresses; nothing is given before `gate` has agreed.
 
 use crate::browser;
 use crate::control::Browser;
 use crate::diagrams::{self, Change};
 use crate::door::Peer;
 use crate::error::Error;
+use crate::files::File;
+use crate::gate::{enter, text};
 use crate::shared::Shared;
-use crate::{configuration, files, guard, limits, plain, store};
+use crate::{configuration, files, limits, plain, store};
 use axum::Router;
-use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};
-use axum::http::header::{
-    CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE, COOKIE, HOST, ORIGIN, SET_COOKIE,
-};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri};
-use axum::middleware::{Next, from_fn_with_state};
+use axum::extract::{ConnectInfo, Path, Query, State, WebSocketUpgrade};
+use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE};
+use axum::http::{StatusCode, Uri};
+use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use lang_text::problem::Locale;
 use std::collections::HashMap;
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use tokio::sync::Semaphore;
 use tokio::task::JoinError;
+
+/// Paths that give the cookie.
+pub const PAGES: &[&str] = &["/", "/plain"];
+/// First parts of paths that are of this robot, and not of every page.
+pub const DATA: &[&str] = &[
+    "socket",
+    "programs",
+    "program",
+    "diagram",
+    "changed",
+    "configuration",
+];
 
 /// All addresses.
 pub fn router(shared: Arc<Shared>) -> Router {
@@ -37,98 +48,33 @@ pub fn router(shared: Arc<Shared>) -> Router {
         .route("/configuration", get(configured))
         .route("/plain", get(table))
         .fallback(file)
-        .layer(from_fn_with_state(shared.clone(), enter))
+        .layer(from_fn_with_state(shared.gate.clone(), enter))
         .with_state(shared)
-}
-
-fn text(status: StatusCode, text: impl Into<String>) -> Response {
-    let mut text: String = text.into();
-    text.push('\n');
-    (status, [(CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response()
-}
-
-/// Lets a request in, or says why not.
-async fn enter(
-    State(shared): State<Arc<Shared>>,
-    ConnectInfo(Peer(peer)): ConnectInfo<Peer>,
-    request: Request,
-    next: Next,
-) -> Response {
-    let is_page = ["/", "/plain"].contains(&request.uri().path());
-    let refused = refusal(&shared, peer, request.uri(), request.headers());
-    let mut answer = match refused {
-        Some(why) => text(StatusCode::FORBIDDEN, why),
-        None => next.run(request).await,
-    };
-    let headers = answer.headers_mut();
-    for (name, value) in guard::HEADERS {
-        headers.insert(name, HeaderValue::from_static(value));
-    }
-    if is_page && refused.is_none() {
-        let cookie = guard::cookie(&shared.token, shared.port);
-        if let Ok(cookie) = HeaderValue::from_str(&cookie) {
-            headers.insert(SET_COOKIE, cookie);
-        }
-    }
-    answer
-}
-
-/// Why a request may not come in; None if it may.
-fn refusal(
-    shared: &Shared,
-    peer: SocketAddr,
-    uri: &Uri,
-    headers: &HeaderMap,
-) -> Option<&'static str> {
-    let header = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
-    let host = header(HOST).unwrap_or_default();
-    if !shared.settings.guests.may_look(peer.ip()) {
-        Some("this computer is not among those that may use the robot")
-    } else if !guard::is_ours(host, &shared.host_name) {
-        Some("open the page by the address of the robot: this name could be anybody's")
-    } else if !guard::is_same_origin(header(ORIGIN), host) {
-        Some("another page in this browser has asked")
-    } else if is_data(uri) && !guard::has_cookie(header(COOKIE), &shared.token) {
-        Some("open the page first: the cookie that it sets is missing")
-    } else {
-        None
-    }
-}
-
-/// What is of this robot, and not of every page.
-fn is_data(uri: &Uri) -> bool {
-    let first = uri.path().split('/').nth(1).unwrap_or_default();
-    [
-        "socket",
-        "programs",
-        "program",
-        "diagram",
-        "changed",
-        "configuration",
-    ]
-    .contains(&first)
 }
 
 async fn file(uri: Uri) -> Response {
     match files::find(uri.path()) {
-        Some(file) => {
-            let age = if files::is_kept(file.path) {
-                "public, max-age=31536000, immutable"
-            } else {
-                "no-cache"
-            };
-            let headers = [
-                (CONTENT_TYPE, file.kind),
-                (CONTENT_ENCODING, "gzip"),
-                (CACHE_CONTROL, age),
-            ];
-            (headers, file.bytes).into_response()
-        }
+        Some(file) => given(file),
         None if uri.path() == "/" => {
             (StatusCode::TEMPORARY_REDIRECT, [("location", "/plain")]).into_response()
         }
         None => text(StatusCode::NOT_FOUND, "there is no such file"),
     }
+}
+
+/// A file of the page as an answer.
+pub fn given(file: &'static File) -> Response {
+    let age = if files::is_kept(file.path) {
+        "public, max-age=31536000, immutable"
+    } else {
+        "no-cache"
+    };
+    let headers = [
+        (CONTENT_TYPE, file.kind),
+        (CONTENT_ENCODING, "gzip"),
+        (CACHE_CONTROL, age),
+    ];
+    (headers, file.bytes).into_response()
 }
 
 async fn socket(
@@ -284,7 +230,7 @@ fn folder<'a>(shared: &'a Shared, name: &str) -> Result<&'a std::path::Path, Err
     folder.ok_or_else(|| Error::Name(name.to_owned()))
 }
 
-fn locale(query: &HashMap<String, String>) -> Locale {
+pub fn locale(query: &HashMap<String, String>) -> Locale {
     match query.get("language").map(String::as_str) {
         Some("ru") => Locale::Russian,
         Some(_) | None => Locale::English,

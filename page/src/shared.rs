@@ -3,6 +3,7 @@
 //! Owns nothing that happens. The robot is where the server was told last.
 
 use crate::control::Control;
+use crate::gate::Gate;
 use crate::playback::Playback;
 use crate::world::World;
 use std::net::{IpAddr, SocketAddr};
@@ -65,12 +66,8 @@ pub struct Settings {
 /// What all requests share.
 pub struct Shared {
     pub settings: Settings,
-    /// The port where it is really served.
-    pub port: u16,
-    /// Of this machine.
-    pub host_name: String,
-    /// The value of the cookie.
-    pub token: String,
+    /// What requests pass first.
+    pub gate: Arc<Gate>,
     /// Where the robot takes programs.
     pub robot: watch::Sender<Option<SocketAddr>>,
     pub control: Control,

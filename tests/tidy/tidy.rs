@@ -249,15 +249,16 @@ fn sources_and_documents_are_ascii() {
     let readings = root().join("lang/diagram/src/generate/readings.rs");
     // What a new task tells pupils.
     let task = root().join("trik/src/task/README.ru.md");
-    // What the page says in Russian.
-    let page = root().join("page/app/src/words/ru.ts");
+    // What the pages say in Russian.
+    let pages =
+        ["page/app/src/words/ru.ts", "page/app/src/class/ru.ts"].map(|part| root().join(part));
     // Pages that pupils and teachers read, in Russian.
     let documents = root().join("docs/ru");
     let is_words = |path: &Path| {
         blocks.iter().any(|part| path.starts_with(part))
             || path.starts_with(&documents)
             || path == task
-            || path == page
+            || pages.iter().any(|page| path == page)
             || path == readings
             || path.ends_with("words.rs")
                 && speaks_russian.iter().any(|part| path.starts_with(part))

@@ -7,7 +7,9 @@ use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{bridges, dap, debug, diagrams, fault, record, recording, remote, replay, task, up};
+use crate::{
+    bridges, class, dap, debug, diagrams, fault, record, recording, remote, replay, task, up,
+};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -28,6 +30,7 @@ Examples:
   trik run square.js                 run a program on it, with its output here
   trik run square.js --robot 192.168.77.1   the same on a robot in the network
   trik send a.js b.py --robot 192.168.77.1,192.168.77.2 --run a.js
+  trik class page --class room.txt   a page with all robots of a class
   trik stop                          end the program, bring all motors to rest
   trik lint maze.qrs                 what is wrong with a diagram of TRIK Studio
   trik gen --lang python maze.qrs -o maze.py   the diagram as a program
@@ -130,6 +133,14 @@ enum Command {
     ///
     /// Exit status: 0 all robots have told it; 2 one could not be reached, or the command line was not understood.
     Status(remote::fleet::FleetArgs),
+    /// The robots of a class: a page that shows them all, their list, and who is in the network.
+    ///
+    /// trik stop, trik status and trik send take the same file with --class.
+    Class {
+        /// What to do.
+        #[command(subcommand)]
+        command: class::ClassCommand,
+    },
     /// Record what the nodes of a mounted tree give.
     ///
     /// Every sample of each node that is sampled in the background, with its own time, every failure with its reason, the lines
@@ -354,6 +365,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Stop(args) => Ok(remote::fleet::stop(&args)),
         Command::Send(args) => remote::fleet::send(&args),
         Command::Status(args) => Ok(remote::fleet::status(&args)),
+        Command::Class { command } => class::run(&command),
         Command::Fault(args) => fault::run(&args),
         Command::Gen(args) => diagrams::generate::run(&args),
         Command::Show(args) => diagrams::show::run(&args),

@@ -158,6 +158,7 @@ mod tests {
             mountpoint: mountpoint.into(),
             board: "/none".into(),
             trikd: None,
+            page: None,
         }
     }
 

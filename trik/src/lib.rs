@@ -5,7 +5,7 @@
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
 //! `script` runs programs with text for it, `sandbox` confines those in Python, `debug` stops diagrams and goes back in them, `dap` does so for editors,
 //! `record` writes what a tree gives into a file, `replay` makes a tree of it, `recording` looks into such files,
-//! `bridges` serves a tree for tools of other people. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `bridges` serves a tree for tools of other people, `class` shows all robots of a class. All of them stand on `error`, `refusal`, `input`, `output`,
 //! `terminal`, `language`, `pattern` and `chart`, which know no command. Nothing of this runs on the controller.
 
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -13,6 +13,7 @@
 mod bridges;
 mod chart;
 mod check;
+mod class;
 pub mod cli;
 mod dap;
 mod dcml;

@@ -50,6 +50,16 @@ pub const HOST_BYTES_MAX: usize = 253;
 pub const ADDRESSES_MAX: usize = 8;
 /// Robots that are talked to at once.
 pub const FLEET_MAX: usize = 64;
+/// Robots that are found in the network.
+pub const FOUND_MAX: usize = 256;
+/// Answers that are looked at for that: who answers again and again is no reason to look for ever.
+pub const FOUND_EVENTS_MAX: usize = 10_000;
+/// Letters of the name of one that is found.
+pub const FOUND_LETTERS_MAX: usize = 40;
+/// Bytes of a file that names the robots of a class.
+pub const CLASS_BYTES_MAX: u64 = 64 << 10;
+/// Bytes of the name of one of them, and of a group.
+pub const CLASS_NAME_BYTES_MAX: usize = 64;
 /// Time for a connection to a robot.
 pub const CONNECT_MS: u32 = 5_000;
 /// Time for the answer to a request; a stop waits for processes that die slowly.

@@ -3,8 +3,8 @@
 //! Owns one private directory, `$XDG_RUNTIME_DIR/trik` or `/tmp/trik-UID`. For a robot NAME it has `NAME` (the default
 //! mount point), `NAME.board` (devices), `NAME.trikd` (folders of trikd), `NAME.ev3dev` (the view of ev3dev of a robot
 //! at its default mount point) and `NAME.lock`: who holds the lock is alive, whatever its process number, and the file
-//! tells where the robot is: a line with the path of its tree, and one with the address where trikd takes programs, if it
-//! runs. Knows nothing of what a board or a tree is.
+//! tells where the robot is: a line with the path of its tree, one with the address where trikd takes programs, if it
+//! runs, and one with that of its page. Knows nothing of what a board or a tree is.
 
 use crate::error::Error;
 use crate::limits;
@@ -160,18 +160,24 @@ impl Place {
         self.held.write_all(&text)
     }
 
-    /// Tells others where its trikd takes programs.
+    /// Tells others where its trikd takes programs, and where its page is, if it has one.
     ///
     /// # Errors
     /// Those of the file system.
-    pub fn announce(&self, address: Option<SocketAddr>) -> io::Result<()> {
+    pub fn announce(
+        &self,
+        address: Option<SocketAddr>,
+        page: Option<SocketAddr>,
+    ) -> io::Result<()> {
         let first = self.mountpoint.as_os_str().len() + 1;
         let first = u64::try_from(first).map_err(io::Error::other)?;
         self.held.set_len(first)?;
         match address {
-            Some(address) => self
-                .held
-                .write_all_at(format!("{address}\n").as_bytes(), first),
+            Some(address) => {
+                let page = page.map_or_else(String::new, |page| format!("{page}\n"));
+                self.held
+                    .write_all_at(format!("{address}\n{page}").as_bytes(), first)
+            }
             None => Ok(()),
         }
     }
@@ -202,6 +208,8 @@ pub struct Running {
     pub board: PathBuf,
     /// Where its trikd takes programs; None: it has no trikd.
     pub trikd: Option<SocketAddr>,
+    /// Where its page is, if it has one.
+    pub page: Option<SocketAddr>,
 }
 
 /// All robots of this user that run.
@@ -222,11 +230,12 @@ pub fn running(base: &Path) -> io::Result<Vec<Running>> {
             Err(TryLockError::Error(error)) => return Err(error),
             Ok(()) => continue,
         }
-        if let Some((mountpoint, trikd)) = read_record(&mut file)? {
+        if let Some(record) = read_record(&mut file)? {
             found.push(Running {
-                mountpoint,
+                mountpoint: record.mountpoint,
                 board: base.join(format!("{name}.board")),
-                trikd,
+                trikd: record.trikd,
+                page: record.page,
             });
         }
     }
@@ -289,7 +298,7 @@ fn sweep(base: &Path) {
         if !is_ours {
             continue;
         }
-        if let Ok(Some((mountpoint, _))) = read_record(&mut file) {
+        if let Ok(Some(Record { mountpoint, .. })) = read_record(&mut file) {
             for path in view_of(&mountpoint).iter().chain([&mountpoint]) {
                 if is_dead(path) {
                     let _ = trikfs::mount::unmount(path);
@@ -312,17 +321,26 @@ fn sweep(base: &Path) {
     }
 }
 
-/// Where a robot is, and where its trikd takes programs.
-fn read_record(file: &mut File) -> io::Result<Option<(PathBuf, Option<SocketAddr>)>> {
+/// What the file of a robot tells.
+struct Record {
+    mountpoint: PathBuf,
+    trikd: Option<SocketAddr>,
+    page: Option<SocketAddr>,
+}
+
+fn read_record(file: &mut File) -> io::Result<Option<Record>> {
     let mut text = Vec::new();
     file.seek(SeekFrom::Start(0))?;
     file.take(limits::RECORD_BYTES_MAX).read_to_end(&mut text)?;
     let mut lines = text.split(|&byte| byte == b'\n');
     let mountpoint = lines.next().filter(|line| line.starts_with(b"/"));
-    let trikd = lines
-        .next()
-        .and_then(|line| std::str::from_utf8(line).ok()?.parse().ok());
-    Ok(mountpoint.map(|line| (PathBuf::from(OsStr::from_bytes(line)), trikd)))
+    let mut address = || std::str::from_utf8(lines.next()?).ok()?.parse().ok();
+    let (trikd, page) = (address(), address());
+    Ok(mountpoint.map(|line| Record {
+        mountpoint: PathBuf::from(OsStr::from_bytes(line)),
+        trikd,
+        page,
+    }))
 }
 
 /// A tree that has lost all its processes.
@@ -399,10 +417,17 @@ mod tests {
             [first.mountpoint.clone(), second.mountpoint.clone()]
         );
         let at = "127.0.0.1:8888".parse().ok();
-        first.announce(at).expect("a record");
-        assert_eq!(running(&base.0).expect("a list")[0].trikd, at);
-        first.announce(None).expect("a record");
-        assert_eq!(running(&base.0).expect("a list")[0].trikd, None);
+        let page = "127.0.0.1:8000".parse().ok();
+        let told = || {
+            let first = running(&base.0).expect("a list").swap_remove(0);
+            (first.trikd, first.page)
+        };
+        first.announce(at, page).expect("a record");
+        assert_eq!(told(), (at, page));
+        first.announce(at, None).expect("a record");
+        assert_eq!(told(), (at, None));
+        first.announce(None, page).expect("a record");
+        assert_eq!(told(), (None, None));
         drop(first);
         let third = Place::claim(&base.0, None).expect("the first place again");
         assert_eq!(third.mountpoint, base.0.join("robot"));

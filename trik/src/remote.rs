@@ -1,6 +1,6 @@
 //! Robots that are reached over the network, real or virtual: `trik run`, `set`, `watch`, `break`, `step`, `stop`, `status`, `send`.
 //!
-//! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
+//! Owns nothing but its parts: `target` is which robot is meant, `roster` those of a class, `link` one connection, `upload` how a program gets there,
 //! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `relay` lets it in when it connects to a debugger here, `step` gives one order, `fleet` does something with several
 //! robots at once, `output` is where a program's text goes, `person` who
 //! answers its questions, `recorded` fetches recordings, `bridged` is what bridges ask.
@@ -14,6 +14,7 @@ mod output;
 mod person;
 pub(crate) mod recorded;
 mod relay;
+pub(crate) mod roster;
 pub(crate) mod run;
 pub(crate) mod step;
 pub(crate) mod target;

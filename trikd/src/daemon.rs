@@ -360,6 +360,8 @@ impl Parts {
                 name: self.settings.name.clone(),
                 config_version: self.settings.config_version.clone(),
                 port: control_port,
+                // One that the system has chosen is told by the page itself.
+                page: self.settings.page_port.filter(|port| *port > 0),
             };
             spawn_local(async move { report("discovery", discovery::answer(about).await) });
         }

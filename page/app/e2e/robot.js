@@ -16,8 +16,8 @@ const END_MS = 15_000;
 
 /** A virtual robot that runs. */
 export class Robot {
-  home = mkdtempSync(join(tmpdir(), 'trik-page-'));
-  tree = join(this.home, 'robot');
+  home;
+  tree;
   #said = '';
   /** @type {import('node:child_process').ChildProcess} */
   #child;
@@ -28,8 +28,12 @@ export class Robot {
   /**
    * @param {string[]} args
    * @param {'up' | 'replay'} command
+   * @param {string} home where it finds other robots, and they it
+   * @param {string} name
    */
-  constructor(args, command = 'up') {
+  constructor(args, command = 'up', home = newHome(), name = 'robot') {
+    this.home = home;
+    this.tree = join(home, name);
     this.#command = command;
     this.#args = args;
     this.#child = this.#start();
@@ -41,6 +45,18 @@ export class Robot {
    */
   static async start(...args) {
     const robot = new Robot(args);
+    await robot.#ready();
+    return robot;
+  }
+
+  /**
+   * Starts one beside others.
+   * @param {string} home
+   * @param {string} name
+   * @param {string[]} args
+   */
+  static async startIn(home, name, ...args) {
+    const robot = new Robot(args, 'up', home, name);
     await robot.#ready();
     return robot;
   }
@@ -124,6 +140,18 @@ export class Robot {
     rmSync(this.home, { recursive: true, force: true });
   }
 
+  /** Ends it, and leaves its home to others. */
+  async leave() {
+    await this.#end();
+  }
+
+  /** It is there again after that, by the same name. */
+  async back() {
+    this.#said = '';
+    this.#child = this.#start();
+    await this.#ready();
+  }
+
   /** Ends it and starts it again at the same port. */
   async restart(whileGone = async () => {}) {
     const port = new URL(this.url).port;
@@ -152,6 +180,54 @@ export class Robot {
   }
 
   async #end() {
+    if (this.#child.exitCode !== null) return;
+    const ended = new Promise((end) => this.#child.once('exit', end));
+    this.#child.kill('SIGINT');
+    await ended;
+  }
+}
+
+/** A folder of its own, short enough for names of sockets. */
+export function newHome() {
+  return mkdtempSync(join(tmpdir(), 'trik-page-'));
+}
+
+/** The page of a class that is served. */
+export class ClassPage {
+  #said = '';
+  /** @type {import('node:child_process').ChildProcess} */
+  #child;
+
+  /** @param {string} home @param {string} lines */
+  constructor(home, lines) {
+    const file = join(home, 'class.txt');
+    writeFileSync(file, lines);
+    const env = { ...process.env, XDG_RUNTIME_DIR: home };
+    const args = ['class', 'page', '--class', file, '--port', '0'];
+    this.#child = spawn(TRIK, args, { env, stdio: ['ignore', 'pipe', 'pipe'] });
+    for (const stream of [this.#child.stdout, this.#child.stderr]) {
+      stream?.on('data', (/** @type {Buffer} */ text) => (this.#said += text.toString()));
+    }
+  }
+
+  /**
+   * Serves one for the robots that a file with these lines names.
+   * @param {string} home
+   * @param {string} lines
+   */
+  static async start(home, lines) {
+    const page = new ClassPage(home, lines);
+    const child = page.#child;
+    await eventually('the class is served', () => page.url !== '' || child.exitCode !== null, START_MS);
+    if (page.url === '') throw new Error(`there is no page: ${page.#said}`);
+    return page;
+  }
+
+  get url() {
+    return /in a browser: (\S+)/.exec(this.#said)?.[1] ?? '';
+  }
+
+  async end() {
     if (this.#child.exitCode !== null) return;
     const ended = new Promise((end) => this.#child.once('exit', end));
     this.#child.kill('SIGINT');

@@ -4,6 +4,7 @@
 
 use super::link::{Message, ms};
 use super::output::{harmless, say};
+use super::roster::{Class, class};
 use super::run::percent;
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
@@ -11,7 +12,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::refusal::Refusal;
 use clap::Args;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -24,6 +25,9 @@ pub(crate) struct FleetArgs {
     /// with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target, value_delimiter = ',')]
     pub robot: Vec<Target>,
+    /// The robots that a file names, a line for each: NAME ADDRESS [GROUP] [page=PORT]; with :GROUP those of that group.
+    #[arg(long, value_name = "FILE[:GROUP]", value_parser = class)]
+    pub class: Option<Class>,
 }
 
 /// What `trik send` can be told.
@@ -36,20 +40,62 @@ pub(crate) struct SendArgs {
     /// with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target, value_delimiter = ',')]
     pub robot: Vec<Target>,
+    /// The robots that a file names, a line for each: NAME ADDRESS [GROUP] [page=PORT]; with :GROUP those of that group.
+    #[arg(long, value_name = "FILE[:GROUP]", value_parser = class)]
+    pub class: Option<Class>,
     /// Run this program when all files are there.
     #[arg(long, value_name = "NAME")]
     pub run: Option<String>,
 }
 
-/// Those that were named, each once; else the one that is meant without a name.
-fn fleet(named: &[Target]) -> Result<Vec<Target>, Error> {
-    if named.is_empty() {
-        return Ok(vec![the_one()?]);
+/// A robot that something is done with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Member {
+    /// Its name in the class; None: it was named by where it is.
+    name: Option<String>,
+    /// Where it is: a virtual one of a class may not run.
+    at: Result<Target, Error>,
+}
+
+impl fmt::Display for Member {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.name, &self.at) {
+            (Some(name), _) => out.write_str(name),
+            (None, Ok(target)) => write!(out, "{target}"),
+            (None, Err(_)) => Ok(()),
+        }
     }
-    let mut all: Vec<Target> = Vec::new();
-    for target in named {
-        if !all.contains(target) {
-            all.push(target.clone());
+}
+
+impl Member {
+    /// What went wrong with it. A name of a class stands in no other sentence.
+    fn complaint(&self, why: &Error) -> String {
+        match &self.name {
+            Some(name) => format!("{name}: {why}"),
+            None => why.to_string(),
+        }
+    }
+}
+
+/// Those that were named, each once; else the one that is meant without a name.
+fn fleet(named: &[Target], class: Option<&Class>) -> Result<Vec<Member>, Error> {
+    let by_address = |target: &Target| Member {
+        name: None,
+        at: Ok(target.clone()),
+    };
+    if named.is_empty() && class.is_none() {
+        return Ok(vec![by_address(&the_one()?)]);
+    }
+    let robots = class.map_or(&[][..], |class| &class.robots);
+    let of_class = robots.iter().map(|robot| Member {
+        name: Some(robot.name.clone()),
+        at: robot.target(),
+    });
+    let mut all: Vec<Member> = Vec::new();
+    for member in of_class.chain(named.iter().map(by_address)) {
+        let is_same = |other: &Member| member.at.is_ok() && other.at == member.at;
+        if !all.iter().any(is_same) {
+            all.push(member);
         }
     }
     let most = limits::FLEET_MAX;
@@ -62,12 +108,12 @@ fn fleet(named: &[Target]) -> Result<Vec<Target>, Error> {
 }
 
 /// Does it with all at once; the results are in their order.
-fn each<T: Send>(all: &[Target], work: impl Fn(&Target) -> T + Sync) -> Vec<T> {
+fn each<T: Send>(all: &[Member], work: impl Fn(&Member) -> T + Sync) -> Vec<T> {
     let work = &work;
     std::thread::scope(|scope| {
         let threads: Vec<_> = all
             .iter()
-            .map(|target| scope.spawn(move || work(target)))
+            .map(|member| scope.spawn(move || work(member)))
             .collect();
         threads
             .into_iter()
@@ -139,34 +185,34 @@ pub(super) fn ask(
 /// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one does not say so,
 /// 2 one could not be told.
 pub(crate) fn stop(args: &FleetArgs) -> u8 {
-    ask_all(args, |target| {
-        let answer = ask(target, Some(b"stop"), ms(limits::ANSWER_MS))?;
+    ask_all(args, |member| {
+        let answer = ask(&member.at.clone()?, Some(b"stop"), ms(limits::ANSWER_MS))?;
         let (rests, text) = answer.of_stop();
         let code = u8::from(!rests);
-        Ok((code, format!("{target}: {text}\n")))
+        Ok((code, format!("{member}: {text}\n")))
     })
 }
 
 /// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
 pub(crate) fn status(args: &FleetArgs) -> u8 {
-    ask_all(args, |target| {
-        match ask(target, None, ms(limits::ANSWER_MS))?.status {
+    ask_all(args, |member| {
+        match ask(&member.at.clone()?, None, ms(limits::ANSWER_MS))?.status {
             Some(text) => Ok((
                 0,
                 text.lines()
-                    .map(|line| format!("{target}: {line}\n"))
+                    .map(|line| format!("{member}: {line}\n"))
                     .collect(),
             )),
             None => Err(Error::Robot(format!(
-                "{target} does not know the question: its software is older than trikd"
+                "{member} does not know the question: its software is older than trikd"
             ))),
         }
     })
 }
 
 /// Prints what each says, and gives the greatest of the codes.
-fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Error> + Sync) -> u8 {
-    let all = match fleet(&args.robot) {
+fn ask_all(args: &FleetArgs, work: impl Fn(&Member) -> Result<(u8, String), Error> + Sync) -> u8 {
+    let all = match fleet(&args.robot, args.class.as_ref()) {
         Ok(all) => all,
         Err(error) => {
             say(&error.to_string());
@@ -174,7 +220,7 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Erro
         }
     };
     let mut worst = 0;
-    for told in each(&all, work) {
+    for (member, told) in all.iter().zip(each(&all, work)) {
         let code = match told {
             Ok((code, text)) => {
                 // Who has stopped reading knows enough.
@@ -182,7 +228,7 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Erro
                 code
             }
             Err(error) => {
-                say(&error.to_string());
+                say(&member.complaint(&error));
                 2
             }
         };
@@ -203,8 +249,8 @@ struct Sent {
 /// A file cannot be sent, or a robot has not got everything.
 pub(crate) fn send(args: &SendArgs) -> Result<u8, Refusal> {
     let files = read(args)?;
-    let all = fleet(&args.robot)?;
-    let results = each(&all, |target| send_to(target, &files, args.run.as_deref()));
+    let all = fleet(&args.robot, args.class.as_ref())?;
+    let results = each(&all, |member| send_to(member, &files, args.run.as_deref()));
     let _ = io::stdout().write_all(table(&all, &results, files.len()).as_bytes());
     let failed = results.iter().filter(|sent| sent.result.is_err()).count();
     match failed {
@@ -233,10 +279,10 @@ fn read(args: &SendArgs) -> Result<Vec<Upload>, Error> {
     Ok(files)
 }
 
-fn send_to(target: &Target, files: &[Upload], run: Option<&str>) -> Sent {
+fn send_to(target: &Member, files: &[Upload], run: Option<&str>) -> Sent {
     let mut count = 0;
     let mut work = || {
-        let mut link = target.connect()?;
+        let mut link = target.at.clone()?.connect()?;
         for file in files {
             let mut shown = 0;
             file.send(&mut link, |done, all| {
@@ -264,9 +310,10 @@ fn send_to(target: &Target, files: &[Upload], run: Option<&str>) -> Sent {
 }
 
 /// A line for each robot, in columns.
-fn table(all: &[Target], results: &[Sent], files: usize) -> String {
-    let names: Vec<_> = all.iter().map(Target::to_string).collect();
-    let width = names.iter().map(String::len).max().unwrap_or(0).max(5);
+fn table(all: &[Member], results: &[Sent], files: usize) -> String {
+    let names: Vec<_> = all.iter().map(Member::to_string).collect();
+    let letters = |name: &String| name.chars().count();
+    let width = names.iter().map(letters).max().unwrap_or(0).max(5);
     let mut text = format!("{:<width$}  {:<8}  RESULT\n", "ROBOT", "FILES");
     for (name, sent) in names.iter().zip(results) {
         let files = format!("{} of {files}", sent.count);
@@ -282,6 +329,7 @@ fn table(all: &[Target], results: &[Sent], files: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::roster::Robot;
     use super::*;
 
     #[test]
@@ -290,18 +338,43 @@ mod tests {
             .iter()
             .flat_map(|name| target(name))
             .collect();
-        let shown: Vec<_> = fleet(&named)
+        let shown: Vec<_> = fleet(&named, None)
             .expect("robots")
             .iter()
-            .map(Target::to_string)
+            .map(Member::to_string)
             .collect();
         assert_eq!(shown, ["a", "b", "a:1"]);
         let many: Vec<_> = (1..=65)
             .flat_map(|number| target(&format!("r{number}")))
             .collect();
         assert_eq!(
-            fleet(&many),
+            fleet(&many, None),
             Err(Error::Refused("65 robots: at most 64 at once".to_owned()))
+        );
+    }
+
+    #[test]
+    fn robots_of_a_class_have_their_names_and_one_that_does_not_run_keeps_nobody_from_anything() {
+        let robot = |name: &str, at: &str| Robot {
+            name: name.to_owned(),
+            at: at.to_owned(),
+            group: String::new(),
+            page: None,
+        };
+        let class = Class {
+            name: "class".to_owned(),
+            robots: vec![robot("anna", "a"), robot("sim", "/none/robot")],
+        };
+        let named: Vec<_> = ["a", "b"].iter().flat_map(|name| target(name)).collect();
+        let all = fleet(&named, Some(&class)).expect("robots");
+        let shown: Vec<_> = all.iter().map(Member::to_string).collect();
+        assert_eq!(shown, ["anna", "sim", "b"]);
+        let why = all[1].at.clone().expect_err("it does not run");
+        assert!(
+            all[1]
+                .complaint(&why)
+                .starts_with("sim: /none/robot: no virtual robot"),
+            "{why}"
         );
     }
 
@@ -330,10 +403,10 @@ mod tests {
 
     #[test]
     fn the_table_has_a_line_for_each_robot() {
-        let all: Vec<_> = ["a", "192.168.77.10"]
-            .iter()
-            .flat_map(|name| target(name))
-            .collect();
+        let all = ["a", "192.168.77.10"].map(|name| Member {
+            name: None,
+            at: target(name),
+        });
         let results = [
             Sent {
                 count: 2,

@@ -173,22 +173,39 @@ impl Target {
     /// # Errors
     /// A sentence with what to do.
     pub(super) fn connect(&self) -> Result<Link, Error> {
-        let found = (self.host.as_str(), self.port).to_socket_addrs();
-        let addresses: Vec<_> = match found {
-            Ok(found) => found.take(limits::ADDRESSES_MAX).collect(),
-            Err(_) => Vec::new(),
-        };
-        let mut why = format!(
-            "there is no robot '{}' in this network: take its IP address, which the robot shows in its network settings",
-            self.host
-        );
-        for address in addresses {
+        let mut why = String::new();
+        for address in self.addresses()? {
             match Link::connect(address, &self.to_string()) {
                 Ok(link) => return Ok(link),
                 Err(error) => why = self.explain(&error),
             }
         }
         Err(Error::Unreachable(why))
+    }
+
+    /// All addresses that the name has, at least one.
+    ///
+    /// # Errors
+    /// There are none.
+    pub(crate) fn addresses(&self) -> Result<Vec<SocketAddr>, Error> {
+        let found = (self.host.as_str(), self.port).to_socket_addrs();
+        let addresses: Vec<_> = match found {
+            Ok(found) => found.take(limits::ADDRESSES_MAX).collect(),
+            Err(_) => Vec::new(),
+        };
+        match addresses.is_empty() {
+            false => Ok(addresses),
+            true => Err(Error::Unreachable(format!(
+                "there is no robot '{}' in this network: take its IP address, which the robot shows in its network settings",
+                self.host
+            ))),
+        }
+    }
+
+    /// Where browsers find its page, if it is a virtual robot of this user.
+    pub(crate) fn page(&self) -> Option<SocketAddr> {
+        let is_meant = |robot: &&Running| robot.trikd.map(Self::from).as_ref() == Some(self);
+        local().ok()?.iter().find(is_meant)?.page
     }
 
     // Kinds of errors of the system are not ours to list.
@@ -262,6 +279,7 @@ mod tests {
             mountpoint: mountpoint.into(),
             board: "/none".into(),
             trikd: trikd.map(|text| text.parse().expect("an address")),
+            page: None,
         };
         let all = [
             robot("/none/a", Some("127.0.0.2:8888")),
@@ -285,6 +303,7 @@ mod tests {
             mountpoint: mountpoint.into(),
             board: "/none".into(),
             trikd: trikd.map(|text| text.parse().expect("an address")),
+            page: None,
         };
         let chosen = |all: &[Running]| {
             choose(all)

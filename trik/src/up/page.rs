@@ -4,13 +4,14 @@
 //! to it.
 
 use super::args::ServingArgs;
-use super::trikd::{Trikd, reachable};
+use super::trikd::Trikd;
+pub(crate) use super::trikd::reachable;
 use crate::error::Error;
 use crate::place::Place;
 pub(super) use page::playback::Playback;
 use page::world::World;
 use page::{Everybody, Page, Settings};
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
@@ -86,29 +87,38 @@ impl Served {
         format!("\nIn a browser: {}\n", self.link())
     }
 
-    fn link(&self) -> String {
+    /// Where this computer reaches it.
+    pub(super) fn address(&self) -> SocketAddr {
         let address = self.page.address();
-        let ip: IpAddr = reachable(address.ip());
-        format!("http://{}/", SocketAddr::new(ip, address.port()))
+        SocketAddr::new(reachable(address.ip()), address.port())
+    }
+
+    fn link(&self) -> String {
+        format!("http://{}/", self.address())
     }
 
     /// Opens it in the browser of the person, if that is wanted. Why it did not, as a line.
     pub(super) fn open(&mut self) -> Option<String> {
-        if !std::mem::take(&mut self.opens) {
-            return None;
+        match std::mem::take(&mut self.opens) {
+            true => browse(&self.link()),
+            false => None,
         }
-        let mut browser = Command::new("xdg-open");
-        browser.arg(self.link()).stdin(Stdio::null());
-        browser.stdout(Stdio::null()).stderr(Stdio::null());
-        match browser.spawn() {
-            Ok(mut child) => {
-                // It ends when the browser has taken the address; its state belongs to nobody.
-                std::thread::spawn(move || child.wait());
-                None
-            }
-            Err(error) => Some(format!(
-                "trik: the browser is not opened, xdg-open: {error}"
-            )),
+    }
+}
+
+/// Opens an address in the browser of the person. Why it did not, as a line.
+pub(crate) fn browse(link: &str) -> Option<String> {
+    let mut browser = Command::new("xdg-open");
+    browser.arg(link).stdin(Stdio::null());
+    browser.stdout(Stdio::null()).stderr(Stdio::null());
+    match browser.spawn() {
+        Ok(mut child) => {
+            // It ends when the browser has taken the address; its state belongs to nobody.
+            std::thread::spawn(move || child.wait());
+            None
         }
+        Err(error) => Some(format!(
+            "trik: the browser is not opened, xdg-open: {error}"
+        )),
     }
 }

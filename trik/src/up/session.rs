@@ -323,7 +323,8 @@ impl<'a> Session<'a> {
         if let (Some(page), Some(address)) = (&self.page, address) {
             page.robot_is_at(address);
         }
-        if let Err(error) = self.place.announce(address) {
+        let page = self.page.as_ref().map(Served::address);
+        if let Err(error) = self.place.announce(address, page) {
             self.note(&format!("trik: other commands do not find trikd: {error}"));
         }
     }

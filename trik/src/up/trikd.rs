@@ -135,7 +135,7 @@ fn own_address(number: usize) -> IpAddr {
 }
 
 /// Where this machine reaches what serves there.
-pub(super) fn reachable(ip: IpAddr) -> IpAddr {
+pub(crate) fn reachable(ip: IpAddr) -> IpAddr {
     if ip.is_unspecified() {
         Ipv4Addr::LOCALHOST.into()
     } else {

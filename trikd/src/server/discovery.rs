@@ -81,6 +81,20 @@ pub struct About {
     pub config_version: String,
     /// The control port.
     pub port: u16,
+    /// The port of the page for browsers, if one is served there.
+    pub page: Option<u16>,
+}
+
+impl About {
+    /// What is told beside the name and the address.
+    fn records(&self) -> Vec<String> {
+        let page = self.page.map(|port| format!("page={port}"));
+        let first = [
+            "version=3.1.4".to_owned(),
+            format!("config={}", self.config_version),
+        ];
+        first.into_iter().chain(page).collect()
+    }
 }
 
 /// Answers for ever.
@@ -94,10 +108,7 @@ pub async fn answer(about: About) -> io::Result<()> {
         Some(name.trim().to_owned())
     };
     let name = label(&about.name.or_else(host).unwrap_or_default());
-    let records = vec![
-        "version=3.1.4".to_owned(),
-        format!("config={}", about.config_version),
-    ];
+    let records = about.records();
     let mut buffer = [0; 1500];
     let mut networks = tokio::time::interval(Duration::from_millis(JOIN_MS));
     let mut budget = Budget::default();
@@ -136,5 +147,23 @@ pub async fn answer(about: About) -> io::Result<()> {
             };
             let _ = socket.send_to(&answer, to).await;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_with_a_page_tells_where_that_is() {
+        let mut about = About {
+            name: None,
+            config_version: "model-2015".to_owned(),
+            port: 8888,
+            page: None,
+        };
+        assert_eq!(about.records(), ["version=3.1.4", "config=model-2015"]);
+        about.page = Some(8000);
+        assert_eq!(about.records()[2], "page=8000");
     }
 }

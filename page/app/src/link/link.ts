@@ -5,10 +5,10 @@
 import type { News, Order } from './words';
 
 /** Who takes what comes. */
-export interface Taker {
+export interface Taker<Told = News> {
   /** The server is there, or not: then the next attempt follows. */
   connected(is: boolean): void;
-  news(news: News): void;
+  news(news: Told): void;
   /** A message of the robot's control port. */
   message(bytes: Uint8Array): void;
 }
@@ -18,7 +18,7 @@ const LATEST_MS = 4000;
 /** The server says something every second; after so long it is gone, and has brought to rest what was driven here. */
 const SILENCE_MS = 4000;
 
-export class Link {
+export class Link<Told = News, Said = Order> {
   #socket: WebSocket | undefined;
   #lostOne: WebSocket | undefined;
   #wait = SOONEST_MS;
@@ -28,13 +28,13 @@ export class Link {
 
   constructor(
     private readonly address: string,
-    private readonly taker: Taker,
+    private readonly taker: Taker<Told>,
   ) {
     this.#connect();
   }
 
   /** Says something to the server. False: it is not there. */
-  order(order: Order): boolean {
+  order(order: Said): boolean {
     return this.#send(JSON.stringify(order));
   }
 
@@ -79,7 +79,7 @@ export class Link {
     };
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
       this.#heard(socket);
-      if (typeof data === 'string') this.taker.news(JSON.parse(data) as News);
+      if (typeof data === 'string') this.taker.news(JSON.parse(data) as Told);
       else this.taker.message(new Uint8Array(data));
     };
     socket.onclose = () => this.#lost(socket);

@@ -1,7 +1,9 @@
 //! Several robots at once: which one is meant, and who has got the files.
 
-use super::Reachable;
+use super::{Reachable, Running};
 use crate::rig::{Home, loopback};
+use harness::{eventually, processes};
+use nix::sys::signal::Signal;
 use std::sync::Arc;
 
 #[test]
@@ -148,4 +150,88 @@ fn a_robot_whose_records_were_removed_is_no_absent_one_and_has_its_address() {
         let output = robot.home.run(&[command, "--robot", reachable.ip()]);
         output.good();
     }
+}
+
+/// Three robots in a file: two that run here, and one that does not.
+fn class_of(home: &Home, robots: [&Reachable; 2]) -> String {
+    let [one, other] = robots.map(|robot| robot.robot.root.display().to_string());
+    let lines = format!("# A room\nanna {one} red\nboris {other} blue\nclara ./none blue\n");
+    home.0.file("class.txt", lines).display().to_string()
+}
+
+#[test]
+fn a_class_is_told_to_stop_by_its_file_and_one_that_does_not_run_delays_nobody() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    let class = class_of(&home, [&one, &other]);
+    let mut running = one.start("loop.js");
+    let said = home.run(&["status", "--class", &class]);
+    assert_eq!(said.code(), 2, "{}", said.stderr);
+    assert!(
+        said.stdout.contains("anna: program loop.js (")
+            && said.stdout.contains("boris: program none"),
+        "{}",
+        said.stdout
+    );
+    assert!(
+        said.stderr.starts_with("trik: clara: ") && said.stderr.contains("no virtual robot"),
+        "{}",
+        said.stderr
+    );
+    let red = home
+        .run(&["stop", "--class", &format!("{class}:red")])
+        .good();
+    assert!(
+        red.starts_with("anna: loop.js was stopped") && red.lines().count() == 1,
+        "{red}"
+    );
+    assert_eq!(running.code(), Some(1));
+    assert!(one.rests());
+    let wrong = home.run(&["stop", "--class", &format!("{class}:green")]);
+    assert_eq!(wrong.code(), 2);
+    assert!(
+        wrong
+            .stderr
+            .contains("no robot is in the group 'green': it has blue, red"),
+        "{}",
+        wrong.stderr
+    );
+    let list = home
+        .run(&["class", "list", "--class", &format!("{class}:red")])
+        .good();
+    assert!(
+        list.starts_with("anna  /") && list.ends_with("  red\n"),
+        "{list}"
+    );
+}
+
+#[test]
+fn a_robot_that_is_killed_during_a_send_is_a_failure_of_its_own() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    let class = class_of(&home, [&one, &other]);
+    home.0.file("big.bin", vec![0xff; 15 << 20]);
+    home.0.file("main.js", "script.wait(60000);");
+    // A robot that is stopped takes what its socket holds, and no more: it is within the send when it dies.
+    let (guardian, serving) = other.trikd();
+    for pid in [guardian, serving] {
+        processes::signal(pid, Signal::SIGSTOP);
+    }
+    let words = [
+        "send", "big.bin", "main.js", "--class", &class, "--run", "main.js",
+    ];
+    let mut sending = Running::new(&mut home.command(&words));
+    eventually("one has got it", || {
+        sending.said().contains("anna: main.js is sent, 2 of 2")
+    });
+    for pid in [guardian, serving] {
+        processes::signal(pid, Signal::SIGKILL);
+    }
+    assert_eq!(sending.code(), Some(1));
+    let table = sending.said();
+    assert!(table.contains("anna   2 of 2    main.js runs"), "{table}");
+    assert!(table.contains("boris  0 of 2    FAILED: "), "{table}");
+    assert!(table.contains("clara  0 of 2    FAILED: "), "{table}");
 }

@@ -1,0 +1,130 @@
+// A class: its robots, which of them are chosen, and the way to its server.
+//
+// Owns what is known and chosen; how it looks is known to the components.
+
+import { Link } from '../link/link';
+import { PROGRAM_BYTES_MAX } from '../limits';
+import { isName } from '../robot/program.svelte';
+import type { Card, News, Order, Title } from './news';
+
+/** Nothing is known of a robot. */
+const BLANK: Card = {
+  reach: 'unknown',
+  why: null,
+  page: null,
+  runs: null,
+  last: null,
+  error: null,
+  stop: null,
+  sending: null,
+};
+
+export class Room {
+  name = $state('');
+  titles = $state.raw<Title[]>([]);
+  /** In the order of the titles. */
+  cards = $state.raw<Card[]>([]);
+  chosen = $state.raw<ReadonlySet<number>>(new Set());
+  isConnected = $state(false);
+  /** This computer commands. */
+  mayDrive = $state(false);
+  refusal = $state('');
+  /** Why the file was not taken. */
+  unsent = $state<'' | 'name' | 'size' | 'offline'>('');
+  readonly #link: Link<News, Order>;
+
+  constructor(address: string) {
+    this.#link = new Link<News, Order>(address, {
+      connected: (is) => {
+        this.isConnected = is;
+        if (!is) this.cards = this.cards.map(() => BLANK);
+      },
+      news: (news) => this.#hear(news),
+      message: () => undefined,
+    });
+  }
+
+  #hear(news: News): void {
+    switch (news.is) {
+      case 'hello': {
+        const isSame = JSON.stringify(news.robots) === JSON.stringify(this.titles);
+        this.name = news.name;
+        this.mayDrive = news.drives;
+        this.titles = news.robots;
+        this.cards = news.robots.map(() => BLANK);
+        // A server that is back has the same robots.
+        if (!isSame) this.chosen = new Set(news.robots.keys());
+        break;
+      }
+      case 'robot': {
+        const { id, ...card } = news;
+        if (id < this.cards.length) this.cards = this.cards.with(id, card);
+        break;
+      }
+      case 'refused':
+        this.refusal = news.why;
+        break;
+      case 'beat':
+        break;
+    }
+  }
+
+  /** The chosen ones in their order. */
+  get robots(): number[] {
+    return [...this.titles.keys()].filter((id) => this.chosen.has(id));
+  }
+
+  /** The names of groups, each once. */
+  get groups(): string[] {
+    return [...new Set(this.titles.map(({ group }) => group))].filter(Boolean);
+  }
+
+  choose(id: number, is: boolean): void {
+    const chosen = new Set(this.chosen);
+    if (is) chosen.add(id);
+    else chosen.delete(id);
+    this.chosen = chosen;
+  }
+
+  /** Those of a group and nobody else; without a group everybody. */
+  chooseGroup(group?: string): void {
+    const all = [...this.titles.keys()];
+    this.chosen = new Set(all.filter((id) => group === undefined || this.titles[id]?.group === group));
+  }
+
+  chooseNobody(): void {
+    this.chosen = new Set();
+  }
+
+  stopAll(): void {
+    this.#order({ do: 'stop', robots: [...this.titles.keys()] });
+  }
+
+  stopChosen(): void {
+    this.#order({ do: 'stop', robots: this.robots });
+  }
+
+  run(name: string): void {
+    this.#order({ do: 'run', robots: this.robots, name });
+  }
+
+  /** Sends a file to the chosen ones. True: it is on its way. */
+  async send(file: File, run: boolean): Promise<boolean> {
+    if (!isName(file.name) || file.name.includes('/')) this.unsent = 'name';
+    else if (file.size > PROGRAM_BYTES_MAX) this.unsent = 'size';
+    else {
+      const head = JSON.stringify({ robots: this.robots, name: file.name, run });
+      const line = new TextEncoder().encode(`${head}\n`);
+      const content = new Uint8Array(await file.arrayBuffer());
+      const message = new Uint8Array(line.length + content.length);
+      message.set(line);
+      message.set(content, line.length);
+      this.unsent = this.#link.request(message) ? '' : 'offline';
+    }
+    return this.unsent === '';
+  }
+
+  #order(order: Order): void {
+    if (order.robots.length > 0) this.#link.order(order);
+  }
+}

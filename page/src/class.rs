@@ -1,0 +1,208 @@
+//! A page for a whole class: what many robots do, a stop for all of them, and programs to those that are chosen.
+//!
+//! Owns what is served at which address. The parts:
+//!
+//! - `board`: the card of each robot, which all viewers are shown
+//! - `robot`: the connection to one robot, which comes back by itself; `upload`: a file on its way to one
+//! - `viewer`, `word`: one browser that looks, and what is said to it; `words`: why something is not so, in two languages
+
+mod board;
+mod robot;
+mod upload;
+mod viewer;
+mod word;
+mod words;
+
+use crate::control::Browser;
+use crate::door::Peer;
+use crate::error::Error;
+use crate::gate::{Gate, enter, text};
+use crate::route::{given, locale};
+use crate::serving::Serving;
+use crate::shared::Guests;
+use crate::{files, limits};
+use axum::Router;
+use axum::extract::{ConnectInfo, Query, State, WebSocketUpgrade};
+use axum::http::{StatusCode, Uri};
+use axum::middleware::from_fn_with_state;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use board::Board;
+use lang_text::problem::Words;
+use std::collections::HashMap;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tokio::sync::Semaphore;
+
+pub use robot::EXPLAINED;
+
+/// The path of the page, by which it knows that it is this one.
+const PATH: &str = "/class";
+/// Paths that give the cookie.
+const PAGES: &[&str] = &[PATH];
+/// First parts of paths that need it.
+const DATA: &[&str] = &["socket"];
+
+/// Where a robot is at the moment.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Found {
+    /// Where it takes programs: tried one after the other.
+    pub addresses: Vec<SocketAddr>,
+    /// Where its own page is, if that is known.
+    pub page: Option<OwnPage>,
+}
+
+/// Where the page of a robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OwnPage {
+    /// There.
+    At(SocketAddr),
+    /// At this port of the address where it takes programs.
+    Port(u16),
+}
+
+/// Where a robot is. It is asked before each connection, on a thread that may wait.
+pub trait Whereabouts: Send + Sync {
+    /// Looks for it.
+    ///
+    /// # Errors
+    /// A sentence: there is no such robot now.
+    fn find(&self) -> Result<Found, Words>;
+}
+
+/// A robot of the class.
+pub struct Member {
+    /// What people call it.
+    pub name: String,
+    /// Those that are together; empty: it is in none.
+    pub group: String,
+    /// Where it is, as people write it.
+    pub at: String,
+    /// Where it is in the network.
+    pub whereabouts: Arc<dyn Whereabouts>,
+}
+
+/// What the page of a class is for.
+pub struct ClassSettings {
+    /// Where it is served; with port 0 at any free one.
+    pub address: SocketAddr,
+    /// The class, as a title.
+    pub name: String,
+    /// At most [`limits::CLASS_ROBOTS_MAX`]; others are left out.
+    pub robots: Vec<Member>,
+    /// Which computers may do what. Those that may only look can stop nothing either.
+    pub guests: Arc<dyn Guests>,
+}
+
+/// What all requests share.
+struct Class {
+    name: String,
+    board: Arc<Board>,
+    guests: Arc<dyn Guests>,
+    browsers: Arc<Semaphore>,
+    /// Bytes of files that are on their way.
+    uploads: Arc<Semaphore>,
+    number: AtomicUsize,
+}
+
+/// The page of a class that is served. Dropping it ends that.
+#[derive(Debug)]
+pub struct ClassPage(Serving);
+
+impl ClassPage {
+    /// Serves it from now on, and looks for the robots.
+    ///
+    /// # Errors
+    /// Nobody can listen there, or there are no more threads.
+    pub fn start(settings: ClassSettings) -> Result<Self, Error> {
+        let ClassSettings {
+            address,
+            name,
+            mut robots,
+            guests,
+        } = settings;
+        robots.truncate(limits::CLASS_ROBOTS_MAX);
+        let threads = limits::CLASS_ROBOTS_MAX;
+        let serving = Serving::start(address, guests.clone(), threads, |port| {
+            let gate = Arc::new(Gate::new(guests.clone(), port, PAGES, DATA)?);
+            let board = Arc::new(Board::new(&robots));
+            for (id, member) in robots.iter().enumerate() {
+                tokio::spawn(robot::run(board.clone(), id, member.whereabouts.clone()));
+            }
+            let class = Arc::new(Class {
+                name,
+                board,
+                guests,
+                browsers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+                uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
+                number: AtomicUsize::new(0),
+            });
+            Ok(Router::new()
+                .route("/socket", get(socket))
+                .fallback(file)
+                .layer(from_fn_with_state(gate, enter))
+                .with_state(class))
+        })?;
+        Ok(Self(serving))
+    }
+
+    /// Where it is served; the page itself is at [`ClassPage::path`] there.
+    pub fn address(&self) -> SocketAddr {
+        self.0.address()
+    }
+
+    /// The path of the page.
+    pub fn path() -> &'static str {
+        PATH
+    }
+}
+
+async fn file(uri: Uri) -> Response {
+    let path = match uri.path() {
+        PATH => "/",
+        "/" => {
+            return (StatusCode::TEMPORARY_REDIRECT, [("location", PATH)]).into_response();
+        }
+        other => other,
+    };
+    files::find_of_class(path).map_or_else(|| match path {
+        "/" => text(
+            StatusCode::NOT_FOUND,
+            "this program was built without the page for browsers: install nodejs and npm, and build again",
+        ),
+        _ => text(StatusCode::NOT_FOUND, "there is no such file"),
+    }, given)
+}
+
+async fn socket(
+    State(class): State<Arc<Class>>,
+    ConnectInfo(Peer(address)): ConnectInfo<Peer>,
+    Query(query): Query<HashMap<String, String>>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    let Ok(seat) = class.browsers.clone().try_acquire_owned() else {
+        let most = limits::BROWSERS_MAX;
+        let why = format!("{most} browsers look already: close some, or wait");
+        return text(StatusCode::SERVICE_UNAVAILABLE, why);
+    };
+    let locale = locale(&query);
+    let number = class.number.fetch_add(1, Ordering::Relaxed);
+    let who = Browser { number, address };
+    let most = match class.guests.may_drive(address.ip()) {
+        true => limits::MESSAGE_BYTES_MAX,
+        false => limits::WORDS_BYTES_MAX,
+    };
+    upgrade
+        .max_message_size(most)
+        .max_frame_size(most)
+        .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
+        .read_buffer_size(limits::READ_BYTES)
+        .on_upgrade(move |socket| async move {
+            viewer::serve(class, socket, who, locale).await;
+            drop(seat);
+        })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,275 @@
+//! The cards of all robots: what is known of each, and what it shall do.
+//!
+//! Owns them, and who is told of a change. Only the newest of a card is ever shown, so a viewer that is slow misses what lay
+//! between and delays nobody.
+
+use super::words::Why;
+use super::{Member, OwnPage};
+use crate::limits;
+use std::net::SocketAddr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tokio::sync::{Notify, mpsc, watch};
+use tokio::task::AbortHandle;
+use tokio::time::Instant;
+
+/// Whether a robot is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Nobody has looked yet.
+    Unknown,
+    /// It takes programs there.
+    There(SocketAddr),
+    /// It is not; the next attempt follows.
+    Absent(Why),
+}
+
+/// What became of the last stop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// It was ordered, and the robot has not answered. One that is not reached is told as soon as it is.
+    Asked(Instant),
+    /// Everything rests; so long after the order that was known.
+    Rests(u64),
+    /// The robot says that something does not rest.
+    Failed(String),
+    /// It was not reached in time.
+    Missed,
+}
+
+/// How far a file is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// So many bytes are on their way.
+    Sending(usize),
+    /// The robot has it.
+    Sent,
+    /// It shall run, and the robot has not answered.
+    Starts,
+    /// It has started.
+    Runs,
+    /// It is not there, or does not run.
+    Failed(Why),
+}
+
+/// A file that was sent to a robot, or a program that was started there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sending {
+    /// Its name.
+    pub name: String,
+    /// Its size; 0: it was there already.
+    pub bytes: usize,
+    /// How far it is.
+    pub stage: Stage,
+}
+
+/// What is known of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Card {
+    pub reach: Reach,
+    pub page: Option<OwnPage>,
+    /// The program that runs.
+    pub runs: Option<String>,
+    /// How the last one ended, in the robot's words.
+    pub last: Option<String>,
+    /// What it has told of as an error since its last start.
+    pub error: Option<String>,
+    pub stop: Option<Stop>,
+    pub sending: Option<Sending>,
+}
+
+/// The way to a robot.
+pub struct Way {
+    /// Everything to rest: overtakes all else.
+    pub stop: Notify,
+    /// Programs to be started.
+    pub runs: mpsc::Sender<String>,
+    /// Who starts them, until the robot's task takes it.
+    waiting: Mutex<Option<mpsc::Receiver<String>>>,
+    /// A file that is on its way.
+    upload: Mutex<Option<AbortHandle>>,
+}
+
+/// What viewers are told once.
+pub struct Title {
+    pub name: String,
+    pub group: String,
+    pub at: String,
+}
+
+/// All cards.
+pub struct Board {
+    pub titles: Vec<Title>,
+    ways: Vec<Way>,
+    /// Each with the number of its last change.
+    cards: Mutex<Vec<(u64, Card)>>,
+    /// The number of the last change of all.
+    changes: watch::Sender<u64>,
+}
+
+/// Nothing that holds one of these locks can fail halfway.
+fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Board {
+    /// For these robots; nothing is known of them.
+    pub fn new(robots: &[Member]) -> Self {
+        let title = |member: &Member| Title {
+            name: member.name.clone(),
+            group: member.group.clone(),
+            at: member.at.clone(),
+        };
+        let way = |_: &Member| {
+            let (runs, waiting) = mpsc::channel(limits::CLASS_RUNS);
+            Way {
+                stop: Notify::new(),
+                runs,
+                waiting: Mutex::new(Some(waiting)),
+                upload: Mutex::new(None),
+            }
+        };
+        let card = Card {
+            reach: Reach::Unknown,
+            page: None,
+            runs: None,
+            last: None,
+            error: None,
+            stop: None,
+            sending: None,
+        };
+        Self {
+            titles: robots.iter().map(title).collect(),
+            ways: robots.iter().map(way).collect(),
+            cards: Mutex::new(vec![(0, card); robots.len()]),
+            changes: watch::Sender::new(0),
+        }
+    }
+
+    /// The way to a robot.
+    pub fn way(&self, id: usize) -> Option<&Way> {
+        self.ways.get(id)
+    }
+
+    /// The programs that shall be started, for the task that has the connection.
+    pub fn take_runs(&self, id: usize) -> Option<mpsc::Receiver<String>> {
+        held(&self.ways.get(id)?.waiting).take()
+    }
+
+    /// Hears of every change.
+    pub fn watch(&self) -> watch::Receiver<u64> {
+        self.changes.subscribe()
+    }
+
+    /// The cards that have changed since this change, with their numbers.
+    pub fn since(&self, change: u64) -> Vec<(usize, Card)> {
+        let cards = held(&self.cards);
+        let changed = cards.iter().enumerate().filter(|(_, (at, _))| *at > change);
+        changed.map(|(id, (_, card))| (id, card.clone())).collect()
+    }
+
+    /// Looks at a card.
+    pub fn with<T>(&self, id: usize, look: impl FnOnce(&Card) -> T) -> Option<T> {
+        held(&self.cards).get(id).map(|(_, card)| look(card))
+    }
+
+    /// Changes a card; whoever looks is told if that has made a difference.
+    pub fn change(&self, id: usize, change: impl FnOnce(&mut Card)) {
+        let mut cards = held(&self.cards);
+        let Some((at, card)) = cards.get_mut(id) else {
+            return;
+        };
+        let before = card.clone();
+        change(card);
+        if *card != before {
+            self.changes.send_modify(|number| {
+                *number += 1;
+                *at = *number;
+            });
+        }
+    }
+
+    /// Changes what is known of the file that was sent last, if it has this name.
+    pub fn stage(&self, id: usize, name: &str, stage: Stage) {
+        self.change(id, |card| {
+            if let Some(sending) = card.sending.as_mut().filter(|one| one.name == name) {
+                sending.stage = stage;
+            }
+        });
+    }
+
+    /// Orders everything to rest. Files that are on their way to be run do not arrive.
+    pub fn stop(&self, id: usize) {
+        let Some(way) = self.ways.get(id) else {
+            return;
+        };
+        if let Some(upload) = held(&way.upload).take() {
+            upload.abort();
+        }
+        self.change(id, |card| {
+            card.stop = Some(Stop::Asked(Instant::now()));
+            if let Some(sending) = &mut card.sending
+                && matches!(sending.stage, Stage::Sending(_) | Stage::Starts)
+            {
+                sending.stage = Stage::Failed(Why::Stopped);
+            }
+        });
+        way.stop.notify_one();
+    }
+
+    /// Whether an order to stop is still to be given.
+    pub fn wants_stop(&self, id: usize) -> bool {
+        let asked = |card: &Card| match card.stop {
+            Some(Stop::Asked(since)) => Some(since),
+            Some(Stop::Rests(_) | Stop::Failed(_) | Stop::Missed) | None => None,
+        };
+        let Some(since) = self.with(id, asked).flatten() else {
+            return false;
+        };
+        if since.elapsed() <= limits::CLASS_STOP_TIME {
+            return true;
+        }
+        // Somebody else may have begun something since.
+        self.change(id, |card| card.stop = Some(Stop::Missed));
+        false
+    }
+
+    /// A file is on its way; one that was before it does not arrive.
+    pub fn begin(&self, id: usize, name: &str, bytes: usize, upload: Option<AbortHandle>) {
+        let Some(way) = self.ways.get(id) else {
+            return;
+        };
+        if let Some(former) = std::mem::replace(&mut *held(&way.upload), upload) {
+            former.abort();
+        }
+        self.change(id, |card| {
+            card.sending = Some(Sending {
+                name: name.to_owned(),
+                bytes,
+                stage: match bytes {
+                    0 => Stage::Starts,
+                    _ => Stage::Sending(0),
+                },
+            });
+        });
+    }
+
+    /// Nothing can be sent to a robot that is not reached.
+    pub fn away(&self, id: usize, name: &str) {
+        self.stage(id, name, Stage::Failed(Why::Away));
+    }
+
+    /// Starts a program that is there.
+    pub fn run(&self, id: usize, name: &str) {
+        let is_there = self.with(id, |card| matches!(card.reach, Reach::There(_)));
+        let sent = self
+            .ways
+            .get(id)
+            .filter(|_| is_there == Some(true))
+            .is_some_and(|way| way.runs.try_send(name.to_owned()).is_ok());
+        let stage = match sent {
+            true => Stage::Starts,
+            false => Stage::Failed(Why::Away),
+        };
+        self.stage(id, name, stage);
+    }
+}

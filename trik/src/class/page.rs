@@ -1,0 +1,130 @@
+//! `trik class page`: the page of a class is served until somebody ends it.
+//!
+//! Owns where it is served, who may command, and where each robot is. What it shows is known to the crate `page`.
+
+use super::PageArgs;
+use crate::error::Error;
+use crate::output::standard;
+use crate::refusal::Refusal;
+use crate::remote::roster::Robot;
+use crate::up::page::{browse, reachable};
+use crate::up::session::signals;
+use lang_text::problem::Words;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use page::Guests;
+use page::class::{ClassPage, ClassSettings, Found, Member, OwnPage, Whereabouts};
+use std::net::{IpAddr, SocketAddr};
+use std::os::fd::AsFd;
+use std::sync::Arc;
+
+/// The port of the page, unless another one is wanted or it is taken. That of one robot is 8000.
+const PORT: u16 = 8100;
+
+/// Everybody looks, and this computer commands.
+struct Teacher;
+
+impl Guests for Teacher {
+    fn may_look(&self, _: IpAddr) -> bool {
+        true
+    }
+
+    fn may_drive(&self, ip: IpAddr) -> bool {
+        ip.to_canonical().is_loopback()
+    }
+
+    fn asks(&self, _: IpAddr) {}
+}
+
+impl Whereabouts for Robot {
+    fn find(&self) -> Result<Found, Words> {
+        let why = |error: Error| {
+            let text = error.to_string();
+            Words::new(text.clone(), text)
+        };
+        let target = self.target().map_err(why)?;
+        let known = self.page.map(OwnPage::Port);
+        Ok(Found {
+            addresses: target.addresses().map_err(why)?,
+            page: known.or_else(|| target.page().map(OwnPage::At)),
+        })
+    }
+}
+
+/// Serves it.
+///
+/// # Errors
+/// The address cannot be had.
+pub(super) fn serve(args: &PageArgs) -> Result<u8, Refusal> {
+    // Threads inherit what is blocked.
+    let signals = signals().map_err(|error| Error::system("signals", error))?;
+    let settings = |port: u16| ClassSettings {
+        address: SocketAddr::new(args.address, port),
+        name: args.class.name.clone(),
+        robots: args.class.robots.iter().map(member).collect(),
+        guests: Arc::new(Teacher),
+    };
+    let page = match (
+        ClassPage::start(settings(args.port.unwrap_or(PORT))),
+        args.port,
+    ) {
+        // Another class has it, or another program.
+        (Err(page::error::Error::Address(..)), None) => ClassPage::start(settings(0)),
+        (page, _) => page,
+    };
+    let page =
+        page.map_err(|error| Error::Refused(format!("{error}; --port names another port")))?;
+    let at = page.address();
+    let at = SocketAddr::new(reachable(at.ip()), at.port());
+    let link = format!("http://{at}{}", ClassPage::path());
+    let count = args.class.robots.len();
+    standard(format!("{count} robots, in a browser: {link}\nCtrl-C ends it\n").as_bytes())?;
+    if let Some(complaint) = args.open.then(|| browse(&link)).flatten() {
+        eprintln!("{complaint}");
+    }
+    loop {
+        if let Ok(Some(_)) = signals.read_signal() {
+            return Ok(0);
+        }
+        let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];
+        // A signal that interrupts this is read above.
+        let _ = poll(&mut fds, PollTimeout::NONE);
+    }
+}
+
+fn member(robot: &Robot) -> Member {
+    Member {
+        name: robot.name.clone(),
+        group: robot.group.clone(),
+        at: robot.at.clone(),
+        whereabouts: Arc::new(robot.clone()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn this_computer_commands_and_others_look() {
+        let ip = |text: &str| text.parse::<IpAddr>().expect("an address");
+        for (text, may) in [
+            ("127.0.0.1", true),
+            ("::1", true),
+            ("::ffff:127.0.0.1", true),
+            ("192.168.77.5", false),
+        ] {
+            assert_eq!(Teacher.may_drive(ip(text)), may, "{text}");
+            assert!(Teacher.may_look(ip(text)));
+        }
+    }
+
+    #[test]
+    fn words_of_a_robot_that_does_not_rest_are_the_same_on_both_sides() {
+        for start in page::class::EXPLAINED {
+            assert!(
+                trikd::program::rest::is_explained(&format!("{start}x")),
+                "{start}"
+            );
+        }
+    }
+}
