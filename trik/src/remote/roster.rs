@@ -89,7 +89,11 @@ fn read(path: &Path) -> Result<Class, Error> {
         let why = format!("longer than {} KiB: it is no list of robots", most >> 10);
         return Err(Error::file(path, why));
     }
-    let folder = path.parent().unwrap_or(Path::new(""));
+    // A path keeps its slash, by which it is known as one.
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
     let robots = parse(&text, folder).map_err(|(line, why)| {
         let place = PathBuf::from(format!("{}:{line}", path.display()));
         Error::file(&place, why)
