@@ -106,8 +106,8 @@ test('a robot that was ended and started again is there again, and the others do
   await eventually('the motor rests', () => power(anna) === '0');
   await boris.back();
   await page.getByText('2 of 3 reached').waitFor();
-  await page.getByRole('link', { name: 'The page of boris' }).waitFor();
-  const url = await page.getByRole('link', { name: 'The page of boris' }).getAttribute('href');
+  await page.getByRole('link', { name: 'Its page: boris' }).waitFor();
+  const url = await page.getByRole('link', { name: 'Its page: boris' }).getAttribute('href');
   expect(url).toBe(boris.url);
   await page.context().close();
 });

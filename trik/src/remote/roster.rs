@@ -89,7 +89,11 @@ fn read(path: &Path) -> Result<Class, Error> {
         let why = format!("longer than {} KiB: it is no list of robots", most >> 10);
         return Err(Error::file(path, why));
     }
-    let folder = path.parent().unwrap_or(Path::new(""));
+    // A path keeps its slash, by which it is known as one.
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
     let robots = parse(&text, folder).map_err(|(line, why)| {
         let place = PathBuf::from(format!("{}:{line}", path.display()));
         Error::file(&place, why)
@@ -149,7 +153,10 @@ fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, String> {
         .ok_or_else(|| format!("'{name}' has no address: {FORM}"))?;
     let at = match is_path(at) {
         // Whether a robot is there is seen when somebody wants something of it.
-        true => folder.join(at).to_string_lossy().into_owned(),
+        true => folder
+            .join(at.trim_start_matches("./"))
+            .to_string_lossy()
+            .into_owned(),
         false => {
             target(at).map_err(|why| format!("'{at}': {why}"))?;
             at.to_owned()
@@ -219,7 +226,7 @@ mod tests {
             [
                 ("anna", "192.168.77.11", "red", None),
                 ("boris", "192.168.77.12:9", "blue", Some(8000)),
-                ("sim", "/class/./robot", "", None),
+                ("sim", "/class/robot", "", None),
                 ("far", "/tmp/robot", "", Some(1)),
             ]
         );

@@ -54,7 +54,7 @@ export const en = {
   runs: (name: string) => `${name} runs`,
   nothingRuns: 'no program runs',
   openPage: 'Its page',
-  openPageOf: (name: string) => `The page of ${name}`,
+  openPageOf: (name: string) => `Its page: ${name}`,
   stopAsked: 'is being stopped',
   stopAway: 'will be stopped as soon as it is reached',
   stopRests: (ms: number) => `at rest, ${ms} ms after the order`,

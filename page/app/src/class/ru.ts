@@ -53,7 +53,7 @@ export const ru: Words = {
   runs: (name) => `Выполняется ${name}`,
   nothingRuns: 'программа не выполняется',
   openPage: 'Его страница',
-  openPageOf: (name) => `Страница робота ${name}`,
+  openPageOf: (name) => `Его страница: ${name}`,
   stopAsked: 'останавливается',
   stopAway: 'будет остановлен, как только появится связь',
   stopRests: (ms) => `остановлен через ${ms} мс после команды`,
