@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::client::{Socket, get};
-use crate::shared::Everybody;
+use crate::guests::Everybody;
 use frame::{Decoder, encode};
+use lang_text::problem::Words;
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::net::{IpAddr, TcpListener, TcpStream};
