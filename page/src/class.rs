@@ -2,12 +2,15 @@
 //!
 //! Owns what is served at which address. The parts:
 //!
-//! - `board`: the card of each robot, which all viewers are shown
+//! - `member`: a robot as a class names it, and where it is
+//! - `board`: the card of each robot, which all viewers are shown; `shared`: what all viewers share
 //! - `robot`: the connection to one robot, which comes back by itself; `upload`: a file on its way to one
 //! - `viewer`, `word`: one browser that looks, and what is said to it; `words`: why something is not so, in two languages
 
 mod board;
+mod member;
 mod robot;
+mod shared;
 mod upload;
 mod viewer;
 mod word;
@@ -17,9 +20,9 @@ use crate::control::Browser;
 use crate::door::Peer;
 use crate::error::Error;
 use crate::gate::{Gate, enter, text};
+use crate::guests::Guests;
 use crate::route::{given, locale};
 use crate::serving::Serving;
-use crate::shared::Guests;
 use crate::{files, limits};
 use axum::Router;
 use axum::extract::{ConnectInfo, Query, State, WebSocketUpgrade};
@@ -28,13 +31,14 @@ use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use board::Board;
-use lang_text::problem::Words;
+use shared::Class;
 use std::collections::HashMap;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tokio::sync::Semaphore;
 
+pub use member::{Found, Member, OwnPage, Whereabouts};
 pub use robot::EXPLAINED;
 
 /// The path of the page, by which it knows that it is this one.
@@ -43,45 +47,6 @@ const PATH: &str = "/class";
 const PAGES: &[&str] = &[PATH];
 /// First parts of paths that need it.
 const DATA: &[&str] = &["socket"];
-
-/// Where a robot is at the moment.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Found {
-    /// Where it takes programs: tried one after the other.
-    pub addresses: Vec<SocketAddr>,
-    /// Where its own page is, if that is known.
-    pub page: Option<OwnPage>,
-}
-
-/// Where the page of a robot is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OwnPage {
-    /// There.
-    At(SocketAddr),
-    /// At this port of the address where it takes programs.
-    Port(u16),
-}
-
-/// Where a robot is. It is asked before each connection, on a thread that may wait.
-pub trait Whereabouts: Send + Sync {
-    /// Looks for it.
-    ///
-    /// # Errors
-    /// A sentence: there is no such robot now.
-    fn find(&self) -> Result<Found, Words>;
-}
-
-/// A robot of the class.
-pub struct Member {
-    /// What people call it.
-    pub name: String,
-    /// Those that are together; empty: it is in none.
-    pub group: String,
-    /// Where it is, as people write it.
-    pub at: String,
-    /// Where it is in the network.
-    pub whereabouts: Arc<dyn Whereabouts>,
-}
 
 /// What the page of a class is for.
 pub struct ClassSettings {
@@ -93,17 +58,6 @@ pub struct ClassSettings {
     pub robots: Vec<Member>,
     /// Which computers may do what. Those that may only look can stop nothing either.
     pub guests: Arc<dyn Guests>,
-}
-
-/// What all requests share.
-struct Class {
-    name: String,
-    board: Arc<Board>,
-    guests: Arc<dyn Guests>,
-    browsers: Arc<Semaphore>,
-    /// Bytes of files that are on their way.
-    uploads: Arc<Semaphore>,
-    number: AtomicUsize,
 }
 
 /// The page of a class that is served. Dropping it ends that.

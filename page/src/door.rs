@@ -2,9 +2,9 @@
 //!
 //! Owns the time of each; `seats` has the choice. What is said over them is not known here.
 
+use crate::guests::Guests;
 use crate::limits;
 use crate::seats::{Room, Seat, Seats, Whom};
-use crate::shared::Guests;
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
 use std::io;

@@ -4,7 +4,7 @@
 
 use crate::door::Peer;
 use crate::guard;
-use crate::shared::Guests;
+use crate::guests::Guests;
 use axum::extract::{ConnectInfo, Request, State};
 use axum::http::header::{CONTENT_TYPE, COOKIE, HOST, ORIGIN, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri};

@@ -10,7 +10,7 @@
 //! - `guard`, `gate`: Host, Origin and the cookie, and what all requests pass
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
-//! - `shared`, `control`: what all requests share; one of all browsers drives
+//! - `shared`, `guests`, `control`: what all requests share; which computers may what; one of all browsers drives
 //! - `drive`: what it writes to the tree, and rest when it leaves
 //! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
 //!   blocks
@@ -34,6 +34,7 @@ mod files;
 mod flows;
 mod gate;
 mod guard;
+mod guests;
 pub mod limits;
 mod plain;
 pub mod playback;
@@ -48,5 +49,6 @@ mod word;
 mod words;
 pub mod world;
 
+pub use guests::{Everybody, Guests};
 pub use server::Page;
-pub use shared::{Everybody, Guests, Settings};
+pub use shared::Settings;

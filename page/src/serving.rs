@@ -5,9 +5,9 @@
 
 use crate::door::{Door, Peer, ROOM};
 use crate::error::Error;
+use crate::guests::Guests;
 use crate::limits;
 use crate::seats::Seats;
-use crate::shared::Guests;
 use axum::Router;
 use std::io;
 use std::net::{SocketAddr, TcpListener};

@@ -1,47 +1,17 @@
-//! What all parts of the server share: what it is for, and who may do what.
+//! What all parts of the server of one robot share, and what it is for.
 //!
 //! Owns nothing that happens. The robot is where the server was told last.
 
 use crate::control::Control;
 use crate::gate::Gate;
+use crate::guests::Guests;
 use crate::playback::Playback;
 use crate::world::World;
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use tokio::sync::{Semaphore, watch};
-
-/// Which computers may do what.
-pub trait Guests: Send + Sync {
-    /// It connects; what it may is asked later.
-    fn comes(&self, _: IpAddr) {}
-
-    /// It may look.
-    fn may_look(&self, ip: IpAddr) -> bool;
-
-    /// It may do things. Asked often; a person at the robot may say yes meanwhile.
-    fn may_drive(&self, ip: IpAddr) -> bool;
-
-    /// It wants to do something and may not: a person at the robot may say yes now.
-    fn asks(&self, ip: IpAddr);
-}
-
-/// Every computer may do everything.
-#[derive(Clone, Copy, Debug)]
-pub struct Everybody;
-
-impl Guests for Everybody {
-    fn may_look(&self, _: IpAddr) -> bool {
-        true
-    }
-
-    fn may_drive(&self, _: IpAddr) -> bool {
-        true
-    }
-
-    fn asks(&self, _: IpAddr) {}
-}
 
 /// What a page is for.
 pub struct Settings {

@@ -3,8 +3,8 @@
 //! Owns them, and who is told of a change. Only the newest of a card is ever shown, so a viewer that is slow misses what lay
 //! between and delays nobody.
 
+use super::member::{Member, OwnPage};
 use super::words::Why;
-use super::{Member, OwnPage};
 use crate::limits;
 use std::net::SocketAddr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -77,8 +77,8 @@ pub struct Card {
     pub sending: Option<Sending>,
 }
 
-/// The way to a robot.
-pub struct Way {
+/// What a robot shall be told.
+pub struct Commands {
     /// Everything to rest: overtakes all else.
     pub stop: Notify,
     /// Programs to be started.
@@ -99,7 +99,7 @@ pub struct Title {
 /// All cards.
 pub struct Board {
     pub titles: Vec<Title>,
-    ways: Vec<Way>,
+    commands: Vec<Commands>,
     /// Each with the number of its last change.
     cards: Mutex<Vec<(u64, Card)>>,
     /// The number of the last change of all.
@@ -119,9 +119,9 @@ impl Board {
             group: member.group.clone(),
             at: member.at.clone(),
         };
-        let way = |_: &Member| {
+        let commands = |_: &Member| {
             let (runs, waiting) = mpsc::channel(limits::CLASS_RUNS);
-            Way {
+            Commands {
                 stop: Notify::new(),
                 runs,
                 waiting: Mutex::new(Some(waiting)),
@@ -139,20 +139,20 @@ impl Board {
         };
         Self {
             titles: robots.iter().map(title).collect(),
-            ways: robots.iter().map(way).collect(),
+            commands: robots.iter().map(commands).collect(),
             cards: Mutex::new(vec![(0, card); robots.len()]),
             changes: watch::Sender::new(0),
         }
     }
 
-    /// The way to a robot.
-    pub fn way(&self, id: usize) -> Option<&Way> {
-        self.ways.get(id)
+    /// What a robot shall be told.
+    pub fn commands(&self, id: usize) -> Option<&Commands> {
+        self.commands.get(id)
     }
 
     /// The programs that shall be started, for the task that has the connection.
     pub fn take_runs(&self, id: usize) -> Option<mpsc::Receiver<String>> {
-        held(&self.ways.get(id)?.waiting).take()
+        held(&self.commands.get(id)?.waiting).take()
     }
 
     /// Hears of every change.
@@ -199,10 +199,10 @@ impl Board {
 
     /// Orders everything to rest. Files that are on their way to be run do not arrive.
     pub fn stop(&self, id: usize) {
-        let Some(way) = self.ways.get(id) else {
+        let Some(told) = self.commands.get(id) else {
             return;
         };
-        if let Some(upload) = held(&way.upload).take() {
+        if let Some(upload) = held(&told.upload).take() {
             upload.abort();
         }
         self.change(id, |card| {
@@ -213,7 +213,7 @@ impl Board {
                 sending.stage = Stage::Failed(Why::Stopped);
             }
         });
-        way.stop.notify_one();
+        told.stop.notify_one();
     }
 
     /// Whether an order to stop is still to be given.
@@ -235,10 +235,10 @@ impl Board {
 
     /// A file is on its way; one that was before it does not arrive.
     pub fn begin(&self, id: usize, name: &str, bytes: usize, upload: Option<AbortHandle>) {
-        let Some(way) = self.ways.get(id) else {
+        let Some(told) = self.commands.get(id) else {
             return;
         };
-        if let Some(former) = std::mem::replace(&mut *held(&way.upload), upload) {
+        if let Some(former) = std::mem::replace(&mut *held(&told.upload), upload) {
             former.abort();
         }
         self.change(id, |card| {
@@ -262,10 +262,10 @@ impl Board {
     pub fn run(&self, id: usize, name: &str) {
         let is_there = self.with(id, |card| matches!(card.reach, Reach::There(_)));
         let sent = self
-            .ways
+            .commands
             .get(id)
             .filter(|_| is_there == Some(true))
-            .is_some_and(|way| way.runs.try_send(name.to_owned()).is_ok());
+            .is_some_and(|told| told.runs.try_send(name.to_owned()).is_ok());
         let stage = match sent {
             true => Stage::Starts,
             false => Stage::Failed(Why::Away),

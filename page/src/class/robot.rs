@@ -4,8 +4,8 @@
 //! own, so that none is in its way.
 
 use super::board::{Board, Card, Reach, Stage, Stop};
+use super::member::{Found, Whereabouts};
 use super::words::Why;
-use super::{Found, Whereabouts};
 use crate::error::plain;
 use crate::limits;
 use frame::{Decoder, encode};
@@ -62,19 +62,19 @@ pub async fn run(board: Arc<Board>, id: usize, whereabouts: Arc<dyn Whereabouts>
 }
 
 async fn stopped(board: &Board, id: usize) {
-    match board.way(id) {
-        Some(way) => way.stop.notified().await,
+    match board.commands(id) {
+        Some(told) => told.stop.notified().await,
         None => std::future::pending().await,
     }
 }
 
 /// Whether a stop is still to be given, which is then said to who has the connection.
 fn keep_stop(board: &Board, id: usize) -> bool {
-    let way = board.way(id).filter(|_| board.wants_stop(id));
-    if let Some(way) = way {
-        way.stop.notify_one();
+    let told = board.commands(id).filter(|_| board.wants_stop(id));
+    if let Some(told) = told {
+        told.stop.notify_one();
     }
-    way.is_some()
+    told.is_some()
 }
 
 /// What is not known any more of a robot that is gone.
@@ -179,7 +179,7 @@ impl<'a> Talk<'a> {
         mut write: OwnedWriteHalf,
         runs: &mut mpsc::Receiver<String>,
     ) -> io::Error {
-        let Some(way) = self.board.way(self.id) else {
+        let Some(told) = self.board.commands(self.id) else {
             return io::ErrorKind::NotFound.into();
         };
         let mut keepalives = interval(limits::KEEPALIVE_TIME);
@@ -189,7 +189,7 @@ impl<'a> Talk<'a> {
         loop {
             let request = tokio::select! {
                 biased;
-                () = way.stop.notified() => {
+                () = told.stop.notified() => {
                     while runs.try_recv().is_ok() {}
                     match self.board.wants_stop(self.id) {
                         true => self.stop(),

@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::client::{Socket, get};
-use crate::shared::Everybody;
+use crate::guests::Everybody;
 use frame::{Decoder, encode};
+use lang_text::problem::Words;
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::net::{IpAddr, TcpListener, TcpStream};
@@ -60,6 +61,8 @@ impl Fake {
 
 impl FakeState {
     fn serve(&self, mut stream: TcpStream) {
+        // As robots do; else a second message waits for the first one.
+        stream.set_nodelay(true).unwrap();
         let mut decoder = Decoder::new(1 << 24);
         let mut buffer = vec![0; 1 << 16];
         while let Ok(size @ 1..) = stream.read(&mut buffer) {

@@ -2,8 +2,8 @@
 //!
 //! Owns the two halves of its connection. An order waits for nothing that is sent to it.
 
-use super::Class;
 use super::board::Reach;
+use super::shared::Class;
 use super::upload::{self, Parcel};
 use super::word::{self, Order, Send};
 use super::words::Refused;

@@ -2,8 +2,8 @@
 //!
 //! Owns their forms; `page/app/src/class/words.ts` has the other end. Pure.
 
-use super::OwnPage;
 use super::board::{Board, Card, Reach, Sending, Stage, Stop};
+use super::member::OwnPage;
 use super::words::Refused;
 use crate::limits;
 use axum::body::Bytes;

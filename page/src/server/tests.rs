@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::client::Socket;
+use crate::guests::Guests;
 use crate::limits;
-use crate::shared::Guests;
 use std::fs;
-use std::io::{self, Read, Write};
-use std::net::{IpAddr, TcpStream};
+use std::io::{Read, Write};
+use std::net::{IpAddr, TcpListener, TcpStream};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};

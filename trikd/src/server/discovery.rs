@@ -107,8 +107,8 @@ pub async fn answer(about: About) -> io::Result<()> {
         let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?;
         Some(name.trim().to_owned())
     };
-    let name = label(&about.name.or_else(host).unwrap_or_default());
     let records = about.records();
+    let name = label(&about.name.or_else(host).unwrap_or_default());
     let mut buffer = [0; 1500];
     let mut networks = tokio::time::interval(Duration::from_millis(JOIN_MS));
     let mut budget = Budget::default();
