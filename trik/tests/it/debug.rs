@@ -8,6 +8,8 @@ mod dap;
 mod flow;
 /// Programs in Python under debugpy.
 mod python;
+/// Their restart, and other processes at the door.
+mod python_again;
 /// Another version of what runs on a robot, from an editor.
 mod restart;
 /// Programs in JavaScript.

@@ -11,6 +11,11 @@ pub(crate) fn told(text: &str, locale: Locale) -> String {
     both(text).in_locale(locale).to_owned()
 }
 
+/// Whether this is that sentence of a robot, as it is told to a person with this language.
+pub(crate) fn is(text: &str, sentence: &str, locale: Locale) -> bool {
+    text == told(sentence, locale)
+}
+
 fn both(text: &str) -> Words {
     let russian = whole(text).map(str::to_owned).or_else(|| partly(text));
     Words::new(text, russian.unwrap_or_else(|| text.to_owned()))
@@ -26,6 +31,8 @@ fn whole(text: &str) -> Option<&'static str> {
         news::NOT_STARTED => "программу не удалось запустить",
         news::NO_DEBUGGER => "этот отладчик есть только у диаграмм и программ на JavaScript",
         news::ONLY_PYTHON => "под debugpy выполняются только программы на Python",
+        news::NO_PORT => "нужны порт, пробел и имя программы",
+        news::NO_SECRET => "секрет - это от 1 до 64 букв a-z, A-Z и цифр",
         news::NOT_IN_JAVASCRIPT => {
             "программу на JavaScript можно только приостановить, продолжить и остановить на ошибке: точек останова, \
              шагов и просмотра переменных нет; пусть программа их печатает"
