@@ -7,12 +7,10 @@ use super::link::{Link, Message, ms};
 use super::relay::Relay;
 use super::upload::Upload;
 use crate::debug::target::words;
-use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, Written, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
-use lang_diagram::lower::World;
-use lang_diagram::machine::patch::Version;
 use lang_text::problem::{Locale, Words};
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -338,7 +336,7 @@ impl Debugged {
         if let Some(control) = told.get("control") {
             let control = control.as_str().unwrap_or("nobody");
             if control != self.link.own_address() {
-                let text = words::told(&format!("{control} is in control"), self.locale);
+                let text = words::told(&news::in_control(control), self.locale);
                 self.put(Event::Said(Channel::Message, text));
             }
             return;
@@ -389,17 +387,7 @@ impl Target for Debugged {
         diagram: Option<&str>,
         version: Written<'_>,
     ) -> Result<Changed, Error> {
-        let mistakes = match version {
-            Written::Diagram(project) => {
-                let version = Version::of(project, World::Robot);
-                version.err().map(|why| problems(&why, self.locale))
-            }
-            Written::Flow(flow) => {
-                let mistakes = flow.ready().err();
-                mistakes.map(|wrong| flow.lines(file, &wrong, self.locale).join("\n"))
-            }
-        };
-        if let Some(mistakes) = mistakes {
+        if let Some(mistakes) = version.mistakes(file, self.locale) {
             return Ok(Changed::Wrong(mistakes));
         }
         let upload = Upload::read(file, diagram)?;

@@ -104,57 +104,60 @@ impl Relay {
     /// Those of the system.
     pub fn turn(&mut self) -> io::Result<bool> {
         if self.come.is_none() {
+            self.find();
             self.greet();
-            self.find()?;
         }
         let (Some(robot), Some(inner)) = (&self.come, &self.inner) else {
             return Ok(false);
         };
+        robot.set_nonblocking(false)?;
+        robot.set_nodelay(true)?;
         copy(robot.try_clone()?, inner.try_clone()?);
         copy(inner.try_clone()?, robot.try_clone()?);
         Ok(true)
     }
 
-    /// Hears who has come.
+    /// Hears who has come, of many at once: a crowd is not to keep the program out.
     fn greet(&mut self) {
-        let mut there = [PollFd::new(self.listener.as_fd(), PollFlags::POLLIN)];
-        if !poll(&mut there, PollTimeout::ZERO).is_ok_and(|count| count > 0) {
-            return;
+        for _ in 0..limits::RELAY_COMERS {
+            let mut there = [PollFd::new(self.listener.as_fd(), PollFlags::POLLIN)];
+            if !poll(&mut there, PollTimeout::ZERO).is_ok_and(|count| count > 0) {
+                return;
+            }
+            // Who was there may have gone before it was let in, which is no end of the talk.
+            let Ok((stream, peer)) = self.listener.accept() else {
+                continue;
+            };
+            if self.is_robot(peer.ip().to_canonical()) && stream.set_nonblocking(true).is_ok() {
+                let said = Vec::new();
+                self.judge(Unknown { stream, said });
+            }
         }
-        // Who was there may have gone before it was let in, which is no end of the talk.
-        let Ok((stream, peer)) = self.listener.accept() else {
-            return;
-        };
-        if !self.is_robot(peer.ip().to_canonical()) || stream.set_nonblocking(true).is_err() {
-            return;
+    }
+
+    /// What becomes of somebody by what it has said so far.
+    fn judge(&mut self, mut one: Unknown) {
+        let line = format!("{}\n", self.secret).into_bytes();
+        match one.hear(&line) {
+            Seems::SomebodyElse => {}
+            // Another one that knows the secret would be a program of ours too; the first counts.
+            Seems::TheProgram if self.come.is_some() => {}
+            Seems::TheProgram => self.come = Some(one.stream),
+            Seems::Undecided => {
+                // Who says nothing must not keep the program out.
+                if self.unknown.len() >= limits::RELAY_UNKNOWN_MAX {
+                    self.unknown.pop_front();
+                }
+                self.unknown.push_back(one);
+            }
         }
-        // Who says nothing must not keep the program out.
-        if self.unknown.len() >= limits::RELAY_UNKNOWN_MAX {
-            self.unknown.pop_front();
-        }
-        let said = Vec::new();
-        self.unknown.push_back(Unknown { stream, said });
     }
 
     /// Looks for the program among them.
-    fn find(&mut self) -> io::Result<()> {
-        let line = format!("{}\n", self.secret).into_bytes();
-        for _ in 0..self.unknown.len() {
-            let Some(mut one) = self.unknown.pop_front() else {
-                break;
-            };
-            match one.hear(&line) {
-                Seems::Undecided => self.unknown.push_back(one),
-                Seems::SomebodyElse => {}
-                Seems::TheProgram => {
-                    one.stream.set_nonblocking(false)?;
-                    one.stream.set_nodelay(true)?;
-                    self.come = Some(one.stream);
-                    self.unknown.clear();
-                }
-            }
+    fn find(&mut self) {
+        for one in std::mem::take(&mut self.unknown) {
+            self.judge(one);
         }
-        Ok(())
     }
 
     /// Virtual robots have several addresses of this computer, and connect from any of them.

@@ -14,6 +14,8 @@ mod python_again;
 mod restart;
 /// Programs in JavaScript.
 mod script;
+/// Who debugs, for others, and in which language they hear of it.
+mod who;
 
 use crate::programs::Reachable;
 use crate::rig::TRIK;

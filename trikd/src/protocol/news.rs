@@ -64,6 +64,11 @@ pub const GONE: &str = "{\"state\":\"gone\"}";
 
 /// Why a client does not get control of the debugger.
 pub fn has_control(who: std::net::SocketAddr) -> String {
+    in_control(&who.to_string())
+}
+
+/// The same of one that is known by its name.
+pub fn in_control(who: &str) -> String {
     format!("{who} is in control")
 }
 

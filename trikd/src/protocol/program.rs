@@ -348,7 +348,6 @@ mod tests {
                 ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
                 ToProgram::Set(text),
                 ToProgram::Debugged(text),
-                ToProgram::Debugpy { address: "[::1]:7", path: text },
                 ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
                 ToProgram::DebugLeft,
                 ToProgram::Reply { number: client, text: is_wanted.then_some(text) },
