@@ -364,7 +364,10 @@ impl Supervisor {
                 if let Some(current) = &mut self.current {
                     current.has_reported_error = true;
                 }
-                self.show(Manner::Error, text);
+                // One without a text was told before.
+                if !text.is_empty() {
+                    self.show(Manner::Error, text);
+                }
             }
             FromProgram::Events => {
                 if let Some(current) = &mut self.current {

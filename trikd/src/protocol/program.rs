@@ -78,7 +78,7 @@ pub enum ToProgram<'a> {
 pub enum FromProgram<'a> {
     /// Output, as it shall be shown, with its newline.
     Print(&'a str),
-    /// A failure; the daemon puts nothing before it.
+    /// A failure; the daemon puts nothing before it. Without a text it was told before.
     Error(&'a str),
     /// Something a person may want to know.
     Info(&'a str),
