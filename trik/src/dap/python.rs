@@ -263,7 +263,7 @@ impl<'a> Session<'a> {
             AdapterSays::End => {
                 self.say("important", "trik dap: debugpy has ended");
                 self.robot.end();
-                self.tell_end(1);
+                self.tell_end_because(1, "debugpy has ended");
             }
         }
         for event in self.robot.turn(Duration::ZERO)? {
@@ -415,7 +415,11 @@ impl<'a> Session<'a> {
             Event::Over(text) => {
                 self.is_over = true;
                 if self.is_begun {
-                    self.tell_end(u8::from(!ended_well(&self.launch, &text)));
+                    let is_good = ended_well(&self.launch, &text);
+                    if !is_good && !self.is_told {
+                        self.say("console", &text);
+                    }
+                    self.tell_end(u8::from(!is_good));
                 } else {
                     self.errors.push(text);
                 }

@@ -202,6 +202,9 @@ fn an_error_that_nobody_catches_is_shown_where_it_is() {
         told["body"]["output"].to_string().contains("line 3"),
         "{told}"
     );
+    let told = editor.wait(|message| message["body"]["category"] == "console");
+    let told = told["body"]["output"].to_string();
+    assert!(told.contains("x.py has failed with exit code 1"), "{told}");
     assert_eq!(editor.event("exited")["exitCode"], 1);
     editor.event("terminated");
     editor.end();
