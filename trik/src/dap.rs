@@ -1,12 +1,13 @@
 //! `trik dap`: programs of blocks, in Python and in JavaScript in the debugger of an editor, by the Debug Adapter Protocol.
 //!
-//! Owns how a client comes: over standard input and output, or over TCP, one after the other. `greeting` begins a talk, `session` is one, `client`
+//! Owns how a client comes: over standard input and output, or over TCP, one after the other, and `owner` whose it is there. `greeting` begins a talk, `session` is one, `client`
 //! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
 //! `debug`; a program in Python is debugged by debugpy, and `python` stands between that and the client; `script` is what JavaScript can.
 
 mod client;
 mod greeting;
 mod launch;
+mod owner;
 mod points;
 mod python;
 mod script;
@@ -16,14 +17,16 @@ mod view;
 use crate::refusal::{Refusal, UNREADABLE};
 use clap::Args;
 use client::Client;
+use nix::unistd::getuid;
 use std::io::{self, Write};
-use std::net::{SocketAddr, TcpListener};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 
 /// What `trik dap` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DapArgs {
     /// Serve clients on this TCP port, one after the other, instead of standard input and output; 0 is any free port. An
-    /// address before it, as in 0.0.0.0:4711, lets other computers in, and with them everybody who can run programs as you.
+    /// address before it, as in 0.0.0.0:4711, lets other computers in, and with them everybody who can reach it; without one
+    /// only programs of your own are let in.
     #[arg(long, value_name = "[ADDRESS:]PORT", value_parser = address)]
     pub listen: Option<SocketAddr>,
 }
@@ -54,7 +57,15 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
     let bound = listener.local_addr().map_err(failed)?;
     let _ = writeln!(io::stderr(), "trik dap: waiting on {bound}");
     loop {
-        let (stream, _) = listener.accept().map_err(failed)?;
+        let (stream, peer) = listener.accept().map_err(failed)?;
+        // Whoever speaks here can run programs as we do. Who has asked for other computers has let everybody in.
+        if bound.ip().is_loopback() && !is_own(peer, &stream) {
+            let _ = writeln!(
+                io::stderr(),
+                "trik dap: {peer} is turned away: a program of another user"
+            );
+            continue;
+        }
         let Ok(input) = stream.try_clone() else {
             continue;
         };
@@ -62,4 +73,12 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
         let _ = stream.set_nodelay(true);
         greeting::serve(Client::new(input, Box::new(stream)));
     }
+}
+
+/// Whether a client of this computer is a program of ours.
+fn is_own(peer: SocketAddr, stream: &TcpStream) -> bool {
+    let Ok(here) = stream.local_addr() else {
+        return false;
+    };
+    owner::may_command(owner::of(peer, here), getuid().as_raw())
 }

@@ -224,6 +224,14 @@ pub const DEBUG_CALLS_SHOWN: usize = 100;
 pub const DEBUG_LINE_BYTES: usize = 16_384;
 /// Requests of an editor that debugs which wait for their turn.
 pub const DAP_WAITING: usize = 1000;
+/// Bytes of a sentence about a robot that is looked for in another language; what programs say may be longer.
+pub const TRANSLATED_BYTES_MAX: usize = 1000;
+/// Files whose breakpoints are kept for a restart of a program in Python.
+pub const DAP_SOURCES_MAX: usize = 1000;
+/// Who is heard in one turn where a program in Python is awaited: as many as the system lets wait.
+pub const RELAY_COMERS: usize = 128;
+/// Who may connect at once to where a program in Python is awaited, before it is known who they are.
+pub const RELAY_UNKNOWN_MAX: usize = 8;
 /// Events of a robot that wait for the debugger; the oldest are lost.
 pub const DEBUG_EVENTS_MAX: usize = 10_000;
 /// Threads, and variables, that `trik watch` shows.

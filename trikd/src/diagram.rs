@@ -89,7 +89,7 @@ impl Engine for Diagram {
         };
         let mut robot = Robot::new(brick, host, self.patience);
         let mut watch = Watch::new(self.locale);
-        let machine = match self.load(&path, host)? {
+        let machine = match self.load(&path, host, &mut watch)? {
             Loaded::Diagram(machine) => *machine,
             Loaded::Flow(program) => {
                 return flow::run(program, is_debugged, &mut robot, &mut watch, host);
@@ -113,7 +113,7 @@ impl Engine for Diagram {
 
 impl Diagram {
     /// A machine with the program of a save, or a data-flow program; tells on the way what is wrong with it.
-    fn load(&self, path: &Path, host: &Host) -> Result<Loaded, Failure> {
+    fn load(&self, path: &Path, host: &Host, watch: &mut Watch) -> Result<Loaded, Failure> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
         let bytes = read_save(path).map_err(failed)?;
@@ -130,8 +130,11 @@ impl Diagram {
             .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
         for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
-            // Faulty blocks tell their fault when they are reached; until then it is a warning.
-            self.warn(problem.severity, &problem.in_locale(self.locale), host);
+            // A faulty block fails when it is reached, and what is wrong with it is told here.
+            let line = problem.in_locale(self.locale);
+            if watch.note_at_load(line.clone()) {
+                self.warn(problem.severity, &line, host);
+            }
         }
         let options = Options {
             compat: self.compat,

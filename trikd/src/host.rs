@@ -252,6 +252,14 @@ impl Host {
         self.send(FromProgram::Error(shown(text)))
     }
 
+    /// An error has come that was told before: the program has failed, and nothing is shown.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn known_error(&self) -> io::Result<()> {
+        self.send(FromProgram::Error(""))
+    }
+
     /// Shows an information.
     ///
     /// # Errors

@@ -14,6 +14,8 @@ pub const DNS_NAME_BYTES_MAX: usize = 512;
 pub const DNS_QUESTIONS_MAX: u16 = 32;
 /// Pointers in one name of multicast DNS.
 pub const DNS_POINTERS_MAX: usize = 8;
+/// Characters of the secret that a program in Python says to its debugger.
+pub const DEBUG_SECRET_BYTES: usize = 64;
 /// Characters of a text in what the daemon itself tells clients that debug.
 pub const DEBUG_CHARACTERS_MAX: usize = 1000;
 /// Bytes of one transfer on a bus: as many as i2c-dev takes.

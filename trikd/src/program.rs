@@ -36,7 +36,7 @@ use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::{Manner, Meter};
-pub use queue::{Command, Programs, Wish};
+pub use queue::{Command, Meeting, Programs, Wish};
 use reaper::{Ended, Reaper};
 use recorder::kept::SaveReason;
 use rest::Rest;
@@ -63,6 +63,8 @@ struct Current {
     is_watched: bool,
     /// It is a Python program that somebody debugs.
     is_under_debugpy: bool,
+    /// The log has that it does not reach that.
+    has_missed_debugger: bool,
     /// A process of it that stood still, and at how many looks in a row.
     still: (Option<Pid>, u32),
     meter: Meter,
@@ -314,6 +316,7 @@ impl Supervisor {
             has_asked_nobody: false,
             is_watched: false,
             is_under_debugpy: false,
+            has_missed_debugger: false,
             still: (None, 0),
             meter: Meter::default(),
             web: Vec::new(),
@@ -352,12 +355,19 @@ impl Supervisor {
         };
         match message {
             FromProgram::Print(text) => self.show(Manner::Print, text),
-            FromProgram::Info(text) => self.show(Manner::Info, text),
+            FromProgram::Info(text) => {
+                self.note_debugger(text);
+                self.show(Manner::Info, text);
+            }
             FromProgram::Error(text) => {
+                self.note_debugger(text);
                 if let Some(current) = &mut self.current {
                     current.has_reported_error = true;
                 }
-                self.show(Manner::Error, text);
+                // One without a text was told before.
+                if !text.is_empty() {
+                    self.show(Manner::Error, text);
+                }
             }
             FromProgram::Events => {
                 if let Some(current) = &mut self.current {

@@ -28,6 +28,20 @@ impl Request {
         })
     }
 
+    /// What the client calls it.
+    pub fn seq(&self) -> u64 {
+        self.seq
+    }
+
+    /// One of ours, for another adapter.
+    pub fn own(seq: u64, command: &str) -> Self {
+        Self {
+            seq,
+            command: command.to_owned(),
+            arguments: Value::Null,
+        }
+    }
+
     /// One that nobody has sent.
     #[cfg(test)]
     pub fn of(command: &str, arguments: Value) -> Self {

@@ -1,9 +1,10 @@
 //! Programs in Python: the adapter of debugpy here, the program under debugpy on the robot, and the editor between them.
 //!
 //! Owns what is added to their talk: where the program runs, that its motors rest while it is stopped, and that it ends with
-//! the talk. All else passes as it is. `adapter` is the process of debugpy.
+//! the talk. All else passes as it is. `adapter` is the process of debugpy, `again` a restart.
 
 mod adapter;
+mod again;
 
 use super::client::{Client, Incoming, Refused, Request};
 use super::greeting::capabilities;
@@ -13,6 +14,7 @@ use crate::language;
 use crate::remote::debugged::Debugged;
 use crate::remote::target::{target as place, the_one};
 use adapter::{Adapter, AdapterSays};
+use again::{Again, Memory};
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -41,7 +43,7 @@ pub(super) fn is_meant(request: &Request) -> bool {
 pub(super) fn serve(request: &Request, hello: &Value, client: &mut Client) -> bool {
     match begin(request) {
         Ok((adapter, robot, folder)) => {
-            Session::new(client, adapter, robot, request.clone()).run(hello, &folder)
+            Session::new(client, (adapter, robot), request.clone(), hello).run(&folder)
         }
         Err(why) => {
             client.answer(request, Err(why));
@@ -82,7 +84,7 @@ pub(super) fn is_for_robot(request: &Request, language: &str) -> Result<(), Refu
 fn begin(request: &Request) -> Result<(Adapter, Debugged, String), Refused> {
     if request.command == "attach" {
         return Err(Refused::new(
-            "a program in Python that runs already cannot be joined: debugpy has to be in it from its beginning; launch it",
+            "a program in Python that runs already cannot be joined: debugpy has to be in it from its beginning; launch it, which ends the one that runs",
         ));
     }
     is_for_robot(request, "Python")?;
@@ -117,6 +119,10 @@ enum Asked {
     GoOn,
     /// Something that the program does before this is passed on.
     First(Request, Instant),
+    /// Breakpoints of before a restart, those of the request with this number in the memory.
+    Points(usize),
+    /// The end of them.
+    Configured,
 }
 
 /// A program that is debugged.
@@ -125,6 +131,11 @@ struct Session<'a> {
     adapter: Adapter,
     robot: Debugged,
     launch: Request,
+    /// What the editor has said of itself.
+    hello: Value,
+    /// What is kept for a restart, and one that is under way.
+    memory: Memory,
+    again: Option<Again>,
     /// Our requests that are not answered, by their numbers.
     asked: Vec<(u64, Asked)>,
     next: u64,
@@ -132,6 +143,8 @@ struct Session<'a> {
     is_begun: bool,
     /// The motors rest for a stop, or are asked to.
     is_held: bool,
+    /// What goes on is one thread, by a step that the editor wants so.
+    goes_alone: bool,
     /// How often they were.
     stops: u64,
     /// Since when some of them are known not to.
@@ -147,16 +160,25 @@ struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    fn new(client: &'a mut Client, adapter: Adapter, robot: Debugged, launch: Request) -> Self {
+    fn new(
+        client: &'a mut Client,
+        (adapter, robot): (Adapter, Debugged),
+        launch: Request,
+        hello: &Value,
+    ) -> Self {
         Self {
             client,
             adapter,
             robot,
             launch,
+            hello: hello.clone(),
+            memory: Memory::default(),
+            again: None,
             asked: Vec::new(),
             next: OWN,
             is_begun: false,
             is_held: false,
+            goes_alone: false,
             stops: 0,
             turning: None,
             errors: Vec::new(),
@@ -167,8 +189,8 @@ impl<'a> Session<'a> {
     }
 
     /// Until the talk is over; false if it could not begin.
-    fn run(&mut self, hello: &Value, folder: &str) -> bool {
-        self.ask("initialize", hello.clone(), Asked::Hello);
+    fn run(&mut self, folder: &str) -> bool {
+        self.ask("initialize", self.hello.clone(), Asked::Hello);
         let attach = self.attachment(folder);
         self.ask("attach", attach, Asked::Attach);
         let is_good = loop {
@@ -241,16 +263,20 @@ impl<'a> Session<'a> {
             AdapterSays::End => {
                 self.say("important", "trik dap: debugpy has ended");
                 self.robot.end();
-                self.tell_end(1);
+                self.tell_end_because(1, "debugpy has ended");
             }
         }
         for event in self.robot.turn(Duration::ZERO)? {
             self.hear_robot(event);
         }
         if self.is_over && !self.is_begun {
-            let why = self.errors.join("\n");
-            self.client.answer(&self.launch, Err(Refused(why)));
-            return Ok(Some(false));
+            let why = std::mem::take(&mut self.errors).join("\n");
+            if self.again.is_none() {
+                self.client.answer(&self.launch, Err(Refused(why)));
+                return Ok(Some(false));
+            }
+            self.is_begun = true;
+            self.tell_end_because(1, &why);
         }
         self.hold_again();
         self.end_late();
@@ -262,18 +288,21 @@ impl<'a> Session<'a> {
     }
 
     /// What debugpy says; whether the talk is over.
-    fn hear(&mut self, message: Value) -> Option<bool> {
-        let text = |name: &str| message.get(name).and_then(Value::as_str);
+    fn hear(&mut self, mut message: Value) -> Option<bool> {
         let number = message.get("request_seq").and_then(Value::as_u64);
         if let Some(at) = self.asked.iter().position(|(seq, _)| Some(*seq) == number) {
             let (_, asked) = self.asked.remove(at);
             return self.answered(asked, &message);
         }
-        match text("event") {
+        self.memory.hear(&mut message);
+        match message["event"].as_str() {
             Some("debugpyWaitingForServer") => {
                 let port = message["body"]["port"].as_u64();
                 if let Some(port) = port.and_then(|port| u16::try_from(port).ok()) {
-                    self.robot.lead_to(port);
+                    match self.adapter.connect(port) {
+                        Ok(debugger) => self.robot.lead_to(debugger),
+                        Err(why) => self.say("important", &format!("trik dap: debugpy: {why}")),
+                    }
                 }
             }
             // Of who makes debugpy, and not for an editor.
@@ -281,14 +310,24 @@ impl<'a> Session<'a> {
             Some("output") if message["body"]["category"] == "telemetry" => {}
             Some("initialized") => {
                 self.is_begun = true;
-                self.client.pass(message);
+                match self.again {
+                    Some(_) => self.configure_again(),
+                    None => self.client.pass(message),
+                }
             }
             Some("stopped") => {
+                let are_all = message["body"]["allThreadsStopped"] == true;
                 self.client.pass(message);
-                self.hold();
+                // The others go on, and drive.
+                if are_all {
+                    self.hold();
+                }
             }
             // However it came to that; after a request of the editor motors go on already.
             Some("continued") => {
+                if self.goes_alone {
+                    message["body"]["allThreadsContinued"] = json!(false);
+                }
                 self.client.pass(message);
                 if std::mem::take(&mut self.is_held) {
                     self.in_program("_go_on()", Asked::GoOn);
@@ -312,6 +351,13 @@ impl<'a> Session<'a> {
             }
             Asked::Attach => {
                 let why = message["message"].as_str().unwrap_or("debugpy refuses");
+                if self.again.is_some() && is_done {
+                    return self.answer_again(None);
+                } else if self.again.is_some() {
+                    self.robot.end();
+                    self.tell_end_because(1, why);
+                    return None;
+                }
                 let answer = match is_done {
                     true => Ok(Value::Null),
                     false => Err(Refused::new(why)),
@@ -323,7 +369,8 @@ impl<'a> Session<'a> {
                 let do_rest = is_done && message["body"]["result"] == "True";
                 self.turning = (!do_rest).then(Instant::now);
             }
-            Asked::GoOn => {}
+            Asked::GoOn | Asked::Configured => {}
+            Asked::Points(at) => self.points_again(at, message),
             Asked::First(request, _) => self.adapter.send(&request.whole()),
         }
         None
@@ -368,7 +415,11 @@ impl<'a> Session<'a> {
             Event::Over(text) => {
                 self.is_over = true;
                 if self.is_begun {
-                    self.tell_end(u8::from(!ended_well(&self.launch, &text)));
+                    let is_good = ended_well(&self.launch, &text);
+                    if !is_good && !self.is_told {
+                        self.say("console", &text);
+                    }
+                    self.tell_end(u8::from(!is_good));
                 } else {
                     self.errors.push(text);
                 }
@@ -395,7 +446,14 @@ impl<'a> Session<'a> {
     }
 
     fn tell_end(&mut self, code: u8) {
-        if !std::mem::replace(&mut self.is_told, true) {
+        self.tell_end_because(code, "the program has ended");
+    }
+
+    /// The end, and to a restart that is under way why it has not come about.
+    fn tell_end_because(&mut self, code: u8, why: &str) {
+        let is_news = !std::mem::replace(&mut self.is_told, true);
+        self.answer_again(Some(why));
+        if is_news {
             self.client.event("exited", json!({ "exitCode": code }));
             self.client.event("terminated", json!({}));
         }
@@ -403,6 +461,13 @@ impl<'a> Session<'a> {
 
     /// What the editor wants; whether the talk is over.
     fn receive(&mut self, request: Request) -> Option<bool> {
+        let request = self.waits(request)?;
+        let is_step = matches!(request.command.as_str(), "next" | "stepIn" | "stepOut");
+        if is_step || request.command == "continue" {
+            // debugpy says of such a step too that all go on.
+            let resumes = self.launch.arguments.get("steppingResumesAllThreads");
+            self.goes_alone = is_step && resumes == Some(&Value::Bool(false));
+        }
         match request.command.as_str() {
             "disconnect" => {
                 // The program and its motors first: debugpy would let it drive on. After its end another one may run.
@@ -417,25 +482,25 @@ impl<'a> Session<'a> {
                 self.client.answer(&request, Ok(Value::Null));
                 self.tell_end(0);
             }
-            "restart" => self.refuse(&request, "a program in Python is ended and launched again"),
+            "restart" => self.restart(request),
             "stepBack" | "reverseContinue" => {
                 self.refuse(&request, "a program in Python cannot be taken back");
             }
             "continue" | "next" | "stepIn" | "stepOut" | "goto" if self.is_held => {
                 (self.is_held, self.turning) = (false, None);
                 let what = format!("_go_on({})", self.stops);
+                self.memory.note(&request);
                 self.in_program(&what, Asked::First(request, Instant::now()));
             }
-            "setExceptionBreakpoints" => self.adapter.send(&exceptions(&request)),
-            "configurationDone" => {
-                if !self.launch.truth("stopOnEntry") {
-                    self.adapter.send(&request.whole());
-                } else {
-                    self.in_program("_stop_on_entry()", Asked::First(request, Instant::now()));
-                }
-            }
             _ if self.is_told => self.refuse(&request, "the program has ended"),
-            _ => self.adapter.send(&request.whole()),
+            "configurationDone" if self.launch.truth("stopOnEntry") => {
+                self.memory.note(&request);
+                self.in_program("_stop_on_entry()", Asked::First(request, Instant::now()));
+            }
+            _ => {
+                self.memory.note(&request);
+                self.adapter.send(&exceptions(&request));
+            }
         }
         None
     }
@@ -460,14 +525,17 @@ fn changed(can: &Value) -> Value {
                 all.entry(name).or_insert(Value::Bool(false));
             }
         }
-        all.insert("supportsRestartRequest".to_owned(), Value::Bool(false));
+        all.insert("supportsRestartRequest".to_owned(), Value::Bool(true));
     }
     all
 }
 
-/// An editor that knows the filter of programs of blocks alone means errors that nobody catches.
+/// A request as debugpy gets it: an editor that knows the filter of programs of blocks alone means errors that nobody catches.
 fn exceptions(request: &Request) -> Value {
     let mut all = request.whole();
+    if request.command != "setExceptionBreakpoints" {
+        return all;
+    }
     let filters = all.pointer_mut("/arguments/filters");
     if let Some(filters) = filters.and_then(Value::as_array_mut) {
         for filter in filters {

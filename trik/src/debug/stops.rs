@@ -39,6 +39,16 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
     lines
 }
 
+/// The same for a line among others; nothing if it is not stopped.
+pub(crate) fn in_one_line(told: &Report) -> Option<String> {
+    let lines = lines(told, None, Locale::English);
+    let lines: Vec<_> = lines
+        .iter()
+        .map(|line| line.trim_start_matches('>').trim())
+        .collect();
+    (!lines.is_empty()).then(|| format!("stopped {}", lines.join(", ")))
+}
+
 fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
     let number = stop.number.unwrap_or_default();
     let words = match stop.reason.as_str() {

@@ -9,7 +9,8 @@ use super::stops::words as stops;
 use crate::diagrams::flow::{Flow, Program};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
-use lang_diagram::machine::patch::Refused;
+use lang_diagram::lower::World;
+use lang_diagram::machine::patch::{Refused, Version};
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem, Words};
 use serde_json::Value;
@@ -70,6 +71,22 @@ impl<'a> Written<'a> {
         match program {
             Program::Diagram(opened) => Self::Diagram(&opened.project),
             Program::Flow(flow, _) | Program::Text(flow) => Self::Flow(flow),
+        }
+    }
+}
+
+impl Written<'_> {
+    /// Why it would be refused by whichever robot, a line for each mistake; none: it has none.
+    pub(crate) fn mistakes(self, file: &Path, locale: Locale) -> Option<String> {
+        match self {
+            Self::Diagram(project) => {
+                let version = Version::of(project, World::Robot);
+                version.err().map(|why| problems(&why, locale))
+            }
+            Self::Flow(flow) => {
+                let mistakes = flow.ready().err();
+                mistakes.map(|wrong| flow.lines(file, &wrong, locale).join("\n"))
+            }
         }
     }
 }

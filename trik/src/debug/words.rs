@@ -194,8 +194,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "finish fin",
         "[THREAD]",
-        "go on to the block after the call of this subprogram",
-        "к блоку после вызова этой подпрограммы",
+        "go on to the block after the call of this subprogram; a data-flow program: to the first reaction of a later instant",
+        "к блоку после вызова этой подпрограммы; в потоковой программе - к первой реакции более позднего момента",
     ),
     row("until u", "LINE", "go on to a line", "до строки"),
     row(
@@ -213,8 +213,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "reverse-finish rf",
         "",
-        "back to where this subprogram was called",
-        "назад к вызову этой подпрограммы",
+        "back to where this subprogram was called; a data-flow program: to the last reaction of an earlier instant",
+        "назад к вызову этой подпрограммы; в потоковой программе - к последней реакции более раннего момента",
     ),
     row(
         "reverse-continue rc",

@@ -58,7 +58,7 @@ impl Seen {
             None => target.connect()?,
         };
         self.tag += 1;
-        let told = look(&mut link, self.tag)?;
+        let told = look(&mut link, self.tag, &mut None)?;
         self.link = Some(link);
         Ok(told)
     }

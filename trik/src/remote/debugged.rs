@@ -7,15 +7,14 @@ use super::link::{Link, Message, ms};
 use super::relay::Relay;
 use super::upload::Upload;
 use crate::debug::target::words;
-use crate::debug::target::{Changed, Channel, Event, Target, Written, problems, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, Written, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
-use lang_diagram::lower::World;
-use lang_diagram::machine::patch::Version;
 use lang_text::problem::{Locale, Words};
 use serde_json::Value;
 use std::collections::VecDeque;
+use std::net::TcpStream;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use trikd::protocol::news;
@@ -133,23 +132,55 @@ impl Debugged {
         let upload = Upload::read(path, None)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
-        let own = |error| Error::system("a port for debugpy", error);
-        let (here, there) = link.addresses().map_err(own)?;
-        let relay = Relay::new(here, there).map_err(own)?;
-        let port = relay.port().map_err(own)?;
         let mut debugged = Self::over(link, Begun::Here, locale);
-        // Before it begins: it may end as soon as that.
-        debugged.python = Some((upload.name.clone(), Some(relay)));
-        let answer = debugged.must(&format!("python {port} {}", upload.name))?;
-        let folder = answer.get("folder").and_then(Value::as_str);
-        let folder = folder.unwrap_or_default().to_owned();
+        let folder = debugged.begin_python(&upload.name)?;
         Ok((debugged, folder))
     }
 
-    /// The debugger of a program in Python listens at this port of 127.0.0.1.
-    pub(crate) fn lead_to(&mut self, port: u16) {
+    /// Ends the program in Python that runs, and has the same file begin, as it is now; also gives the folder that it is in there.
+    /// What the old one has said in time is still told, and not its end.
+    ///
+    /// # Errors
+    /// A sentence: the file cannot be sent, and what ran goes on unless its end is told; or the robot is gone.
+    pub(crate) fn python_again(&mut self, path: &Path) -> Result<String, Error> {
+        let upload = Upload::read(path, None)?;
+        upload.send(&mut self.link, |_, _| {})?;
+        let folder = self.begin_python(&upload.name)?;
+        self.events
+            .retain(|event| matches!(event, Event::Said(Channel::Output, _)));
+        self.is_gone = false;
+        Ok(folder)
+    }
+
+    /// Has a program in Python begin that has been sent; the folder that it is in.
+    fn begin_python(&mut self, name: &str) -> Result<String, Error> {
+        let own = |error| Error::system("a port for debugpy", error);
+        let (here, there) = self.link.addresses().map_err(own)?;
+        let relay = Relay::new(here, there).map_err(own)?;
+        let (port, secret) = relay.place().map_err(own)?;
+        let order = format!("python {port}:{secret} {name}");
+        // Before it begins: it may end as soon as that.
+        self.python = Some((name.to_owned(), Some(relay)));
+        let answer = self.ask(&order)?;
+        match why_not(&answer) {
+            None => {}
+            // It takes the port and the secret for one word.
+            Some(why) if words::is(&why, news::NO_PORT, self.locale) => {
+                return Err(Error::Robot(format!(
+                    "{}: its trikd is older than this program, and would let other programs of this computer in: install the one that belongs to it",
+                    self.link.name()
+                )));
+            }
+            Some(why) => return Err(Error::Robot(format!("{}: {why}", self.link.name()))),
+        }
+        let folder = answer.get("folder").and_then(Value::as_str);
+        Ok(folder.unwrap_or_default().to_owned())
+    }
+
+    /// The debugger of a program in Python is at the other end of this.
+    pub(crate) fn lead_to(&mut self, debugger: TcpStream) {
         if let Some((_, Some(relay))) = &mut self.python {
-            relay.lead_to(port);
+            relay.lead_to(debugger);
         }
     }
 
@@ -305,7 +336,7 @@ impl Debugged {
         if let Some(control) = told.get("control") {
             let control = control.as_str().unwrap_or("nobody");
             if control != self.link.own_address() {
-                let text = words::told(&format!("{control} is in control"), self.locale);
+                let text = words::told(&news::in_control(control), self.locale);
                 self.put(Event::Said(Channel::Message, text));
             }
             return;
@@ -356,17 +387,7 @@ impl Target for Debugged {
         diagram: Option<&str>,
         version: Written<'_>,
     ) -> Result<Changed, Error> {
-        let mistakes = match version {
-            Written::Diagram(project) => {
-                let version = Version::of(project, World::Robot);
-                version.err().map(|why| problems(&why, self.locale))
-            }
-            Written::Flow(flow) => {
-                let mistakes = flow.ready().err();
-                mistakes.map(|wrong| flow.lines(file, &wrong, self.locale).join("\n"))
-            }
-        };
-        if let Some(mistakes) = mistakes {
+        if let Some(mistakes) = version.mistakes(file, self.locale) {
             return Ok(Changed::Wrong(mistakes));
         }
         let upload = Upload::read(file, diagram)?;

@@ -2,12 +2,15 @@
 //!
 //! Owns a thread for each robot, the lines about their progress and the table at the end.
 
-use super::link::{Message, ms};
+use super::link::{Link, Message, ms};
 use super::output::{harmless, say};
 use super::roster::{Class, class};
 use super::run::percent;
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
+use super::watch::look;
+use crate::debug::report::Report;
+use crate::debug::stops;
 use crate::error::Error;
 use crate::limits;
 use crate::refusal::Refusal;
@@ -17,6 +20,7 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use trikd::program::rest::is_explained;
+use trikd::protocol::news;
 
 /// What `trik stop` and `trik status` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
@@ -155,7 +159,10 @@ pub(super) fn ask(
     request: Option<&[u8]>,
     patience: Duration,
 ) -> Result<Answer, Error> {
-    let mut link = target.connect()?;
+    over(&mut target.connect()?, request, patience)
+}
+
+fn over(link: &mut Link, request: Option<&[u8]>, patience: Duration) -> Result<Answer, Error> {
     if let Some(request) = request {
         link.ask(&[request]);
     }
@@ -196,18 +203,36 @@ pub(crate) fn stop(args: &FleetArgs) -> u8 {
 /// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
 pub(crate) fn status(args: &FleetArgs) -> u8 {
     ask_all(args, |member| {
-        match ask(&member.at.clone()?, None, ms(limits::ANSWER_MS))?.status {
-            Some(text) => Ok((
-                0,
-                text.lines()
-                    .map(|line| format!("{member}: {line}\n"))
-                    .collect(),
-            )),
+        let mut link = member.at.clone()?.connect()?;
+        match over(&mut link, None, ms(limits::ANSWER_MS))?.status {
+            Some(text) => {
+                let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
+                if news::status(&text).runs.is_some() {
+                    lines.extend(debugger(&mut link));
+                }
+                let lines = lines.iter().map(|line| format!("{member}: {line}\n"));
+                Ok((0, lines.collect()))
+            }
             None => Err(Error::Robot(format!(
                 "{member} does not know the question: its software is older than trikd"
             ))),
         }
     })
+}
+
+/// Where a program is stopped by a debugger, and who is in control of that. A robot that does not answer has none.
+fn debugger(link: &mut Link) -> Vec<String> {
+    let mut control = None;
+    let Ok(answer) = look(link, 1, &mut control) else {
+        return Vec::new();
+    };
+    let told = answer.get("program").and_then(Report::read);
+    let mut lines: Vec<_> = told
+        .and_then(|told| stops::in_one_line(&told))
+        .into_iter()
+        .collect();
+    lines.extend(control.map(|holder| format!("debugger {}", news::in_control(&holder))));
+    lines
 }
 
 /// Prints what each says, and gives the greatest of the codes.

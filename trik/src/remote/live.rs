@@ -6,11 +6,16 @@ use super::link::{Message, ms};
 use super::output::{harmless, say};
 use super::target::{Target, target, the_one};
 use super::upload::Upload;
+use crate::debug::target::Written;
+use crate::debug::target::words::told;
 use crate::diagrams::flow;
+use crate::diagrams::save::must;
 use crate::error::Error;
+use crate::language;
 use crate::limits;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use lang_text::problem::Locale;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 use trikd::protocol::news;
@@ -38,6 +43,9 @@ pub(crate) struct SetArgs {
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 fn assignment(text: &str) -> Result<String, String> {
@@ -55,7 +63,7 @@ pub(crate) fn set(args: &SetArgs) -> u8 {
     match ask(args) {
         Ok(code) => code,
         Err(error) => {
-            say(&error.to_string());
+            say(&told(&error.to_string(), args.language));
             2
         }
     }
@@ -67,7 +75,7 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
         None => the_one()?,
     };
     let (is_changed, text) = assign(&target, &args.assignment)?;
-    say(&harmless(&text));
+    say(&harmless(&told(&text, args.language)));
     Ok(u8::from(!is_changed))
 }
 
@@ -117,6 +125,7 @@ pub(super) struct Watched {
     gone: WhenGone,
     seen: FileVersion,
     at: Instant,
+    locale: Locale,
 }
 
 impl Watched {
@@ -124,7 +133,12 @@ impl Watched {
     ///
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
-    pub(super) fn new(path: &Path, diagram: Option<&str>, gone: WhenGone) -> Result<Self, Error> {
+    pub(super) fn new(
+        path: &Path,
+        diagram: Option<&str>,
+        gone: WhenGone,
+        locale: Locale,
+    ) -> Result<Self, Error> {
         if !flow::is_of_blocks(path) {
             let why = "--watch is for diagrams (NAME.qrs, NAME.flow): other programs cannot be changed while they run";
             return Err(Error::file(path, why.to_owned()));
@@ -135,6 +149,7 @@ impl Watched {
             gone,
             seen: look(path),
             at: Instant::now(),
+            locale,
         })
     }
 
@@ -156,9 +171,39 @@ impl Watched {
                 Some([upload.request(), patch.into_bytes()])
             }
             Err(error) => {
-                say(&format!("{error}; what runs goes on as it is"));
+                let why = format!("{error}; what runs goes on as it is");
+                say(&told(&why, self.locale));
                 None
             }
+        }
+    }
+}
+
+impl Watched {
+    /// What a robot says of a new version, for the person: its mistakes are told in the language of the robot, so they are
+    /// looked for here again.
+    pub(super) fn told(&self, text: &str) -> String {
+        let refusal = news::unchanged(&self.name(), "");
+        let own = match (self.locale, text.strip_prefix(&refusal)) {
+            (Locale::Russian, Some(_)) => self.mistakes(),
+            (Locale::English, _) | (Locale::Russian, None) => None,
+        };
+        match own {
+            Some(mistakes) => told(&refusal, self.locale) + &mistakes,
+            None => told(text, self.locale),
+        }
+    }
+
+    fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    fn mistakes(&self) -> Option<String> {
+        let opened = flow::open(&self.path, self.diagram.as_deref());
+        match must(opened, &self.path, self.locale) {
+            Ok(opened) => Written::of(&opened).mistakes(&self.path, self.locale),
+            Err(refusal) => Some(refusal.lines.join("\n")),
         }
     }
 }
@@ -186,7 +231,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.qrs");
         std::fs::write(&path, "one").unwrap();
-        let mut watched = Watched::new(&path, None, WhenGone::Refuse).unwrap();
+        let mut watched = Watched::new(&path, None, WhenGone::Refuse, Locale::English).unwrap();
         let long_ago = Instant::now().checked_sub(ms(60_000)).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
@@ -201,8 +246,9 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
-        assert!(Watched::new(Path::new("A.FLOW"), None, WhenGone::End).is_ok());
-        let other = Watched::new(Path::new("a.py"), None, WhenGone::End).unwrap_err();
+        assert!(Watched::new(Path::new("A.FLOW"), None, WhenGone::End, Locale::English).is_ok());
+        let other =
+            Watched::new(Path::new("a.py"), None, WhenGone::End, Locale::English).unwrap_err();
         assert!(
             other.to_string().contains("--watch is for diagrams"),
             "{other}"

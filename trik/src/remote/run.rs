@@ -8,9 +8,12 @@ use super::output::{Output, harmless, say};
 use super::person::Person;
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
+use crate::debug::target::words::told;
 use crate::error::Error;
+use crate::language;
 use crate::limits;
 use clap::Args;
+use lang_text::problem::Locale;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use std::io::{self, IsTerminal, Write};
@@ -46,6 +49,9 @@ pub(crate) struct RunArgs {
         value_name = "POLICY"
     )]
     pub gone: WhenGone,
+    /// Language of sentences about the program: en or ru. What the program says is its own.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// The program has failed, or was stopped.
@@ -57,7 +63,7 @@ const COULD_NOT: u8 = 2;
 /// be run, or nobody knows how it ended.
 pub(crate) fn run(args: &RunArgs) -> u8 {
     follow(args).unwrap_or_else(|error| {
-        say(&error.to_string());
+        say(&told(&error.to_string(), args.language));
         COULD_NOT
     })
 }
@@ -65,7 +71,7 @@ pub(crate) fn run(args: &RunArgs) -> u8 {
 fn follow(args: &RunArgs) -> Result<u8, Error> {
     let diagram = args.diagram.as_deref();
     let watched = match args.watch {
-        true => Some(Watched::new(&args.file, diagram, args.gone)?),
+        true => Some(Watched::new(&args.file, diagram, args.gone, args.language)?),
         false => None,
     };
     let upload = Upload::read(&args.file, diagram)?;
@@ -97,6 +103,7 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
         stopping: None,
         watched,
         person: Person::default(),
+        locale: args.language,
     };
     let code = session.run();
     let Session {
@@ -121,6 +128,8 @@ struct Session {
     watched: Option<Watched>,
     /// Who answers its questions.
     person: Person,
+    /// The language of who runs it.
+    locale: Locale,
 }
 
 impl Session {
@@ -135,14 +144,14 @@ impl Session {
             }
             while let Ok(Some(_)) = self.signals.read_signal() {
                 if self.stopping.is_some() {
-                    say(&format!(
+                    self.tell(&format!(
                         "left; {} may still run on {}: trik stop ends it",
                         self.name,
                         self.link.name()
                     ));
                     return Ok(FAILED);
                 }
-                say(&format!(
+                self.tell(&format!(
                     "stopping {} on {}; a second Ctrl-C does not wait",
                     self.name,
                     self.link.name()
@@ -172,6 +181,10 @@ impl Session {
             }
             self.turn()?;
         }
+    }
+
+    fn tell(&self, text: &str) {
+        say(&told(text, self.locale));
     }
 
     fn turn(&mut self) -> Result<(), Error> {
@@ -209,6 +222,10 @@ impl Session {
                     self.link.ask(&[b"status"]);
                 }
                 if text != news::started(&self.name) {
+                    let text = match &self.watched {
+                        Some(watched) => watched.told(&text),
+                        None => told(&text, self.locale),
+                    };
                     let text = harmless(&text);
                     let _ = writeln!(io::stderr(), "{}", text.trim_end());
                 }
@@ -232,7 +249,7 @@ impl Session {
         Some(match news::ended(last, &self.name) {
             Some(end) => self.judge(end, last),
             None => {
-                say(&format!("{} does not run any more", self.name));
+                self.tell(&format!("{} does not run any more", self.name));
                 FAILED
             }
         })
@@ -244,7 +261,7 @@ impl Session {
         }
         // Who has closed the output knows that.
         if !self.output.is_closed() {
-            say(text);
+            self.tell(text);
         }
         FAILED
     }

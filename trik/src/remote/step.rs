@@ -94,6 +94,9 @@ pub(crate) struct ContinueArgs {
     /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
     #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// Lets the program run until it comes to a place. The exit code: 0 it is stopped there, 1 it has ended before, or the order
@@ -160,7 +163,7 @@ pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
 /// # Errors
 /// The robot is gone.
 pub(crate) fn go_on(args: &ContinueArgs) -> Result<u8, Refusal> {
-    let mut robot = attached(args.robot.as_ref(), Locale::English)?;
+    let mut robot = attached(args.robot.as_ref(), args.language)?;
     robot.close();
     Ok(0)
 }
@@ -190,13 +193,13 @@ fn attached(robot: Option<&Target>, locale: Locale) -> Result<Debugged, Refusal>
         Some(robot) => Debugged::attach(robot, Runs::Any, locale),
         None => the_one().and_then(|robot| Debugged::attach(&robot, Runs::Any, locale)),
     };
-    begun.map_err(unreachable)
+    begun.map_err(|error| unreachable(error, locale))
 }
 
-fn unreachable(error: Error) -> Refusal {
+fn unreachable(error: Error, locale: Locale) -> Refusal {
     Refusal {
         code: UNREADABLE,
-        ..Refusal::new(error.to_string())
+        ..Refusal::new(words::told(&error.to_string(), locale))
     }
 }
 
@@ -242,7 +245,7 @@ fn finish(
     let until = at
         .seconds
         .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
-    let mut told = match talked.map_err(unreachable)? {
+    let mut told = match talked.map_err(|error| unreachable(error, at.language))? {
         Reply::State(told) => *told,
         Reply::Done => Report::default(),
         Reply::Refused(why) => {
@@ -257,7 +260,8 @@ fn finish(
             robot.close();
             return Ok(1);
         }
-        for event in robot.turn(TURN).map_err(unreachable)? {
+        let events = robot.turn(TURN);
+        for event in events.map_err(|error| unreachable(error, at.language))? {
             match event {
                 Event::Report(value) => {
                     for line in log_lines(&value) {
@@ -273,7 +277,7 @@ fn finish(
                 }
                 Event::Said(Channel::Message, text) => say(&harmless(&text)),
                 Event::Over(why) => {
-                    say(&harmless(&why));
+                    say(&harmless(&words::told(&why, at.language)));
                     return Ok(1);
                 }
             }

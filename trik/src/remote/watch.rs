@@ -10,7 +10,7 @@ use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::Report;
 use crate::debug::stops::words;
 use crate::debug::target::why_not;
-use crate::debug::target::words::{ctrl_c_ends, seconds as unit, told};
+use crate::debug::target::words::{ctrl_c_ends, seconds as unit, told as words_of_robot};
 use crate::error::Error;
 use crate::language;
 use crate::limits;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &WatchArgs) -> Result<u8, Refusal> {
     Ok(match watch(args, listing.as_ref()) {
         Ok(code) => code,
         Err(error) => {
-            say(&error.to_string());
+            say(&words_of_robot(&error.to_string(), args.language));
             UNREADABLE
         }
     })
@@ -83,12 +83,12 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         if until.is_some_and(|until| Instant::now() >= until) {
             break;
         }
-        let answer = look(&mut link, tag)?;
+        let answer = look(&mut link, tag, &mut picture.control)?;
         if let Some(why) = why_not(&answer) {
             let is_end = has_seen && why == news::NO_DIAGRAM;
             say(&match is_end {
                 true => words::in_locale(args.language, words::has_ended()),
-                false => told(&why, args.language),
+                false => words_of_robot(&why, args.language),
             });
             return Ok(u8::from(!is_end));
         }
@@ -100,19 +100,36 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         }
         let next = Instant::now() + PAUSE;
         while Instant::now() < next {
-            while link.next().is_some() {}
+            while let Some(message) = link.next() {
+                note_control(&message, &mut picture.control);
+            }
             link.turn(next.saturating_duration_since(Instant::now()), None, true)?;
         }
     }
     Ok(0)
 }
 
-/// Asks where the program is.
-pub(super) fn look(link: &mut Link, tag: u64) -> Result<Value, Error> {
+/// Hears who is in control of the debugger: an address, or nobody.
+fn note_control(message: &Message, control: &mut Option<String>) {
+    if let Message::Debug(text) = message
+        && let Ok(told) = serde_json::from_str::<Value>(text)
+        && let Some(holder) = told.get("control")
+    {
+        *control = holder.as_str().map(str::to_owned);
+    }
+}
+
+/// Asks where the program is, and hears who is in control of its debugger.
+pub(super) fn look(
+    link: &mut Link,
+    tag: u64,
+    control: &mut Option<String>,
+) -> Result<Value, Error> {
     link.ask(&[format!("debug:{tag} look").as_bytes()]);
     let deadline = Instant::now() + ms(limits::ANSWER_MS);
     while Instant::now() < deadline {
         while let Some(message) = link.next() {
+            note_control(&message, control);
             let Message::Debug(text) = message else {
                 continue;
             };
@@ -137,6 +154,8 @@ struct Picture<'a> {
     locale: Locale,
     /// The last values of each variable that is a number.
     values: BTreeMap<String, VecDeque<f64>>,
+    /// The address of who is in control of the debugger.
+    control: Option<String>,
     last: Vec<String>,
 }
 
@@ -147,6 +166,7 @@ impl<'a> Picture<'a> {
             is_drawn,
             locale,
             values: BTreeMap::new(),
+            control: None,
             last: Vec::new(),
         }
     }
@@ -226,6 +246,12 @@ impl<'a> Picture<'a> {
             lines.push(String::new());
         }
         lines.extend(self.ports(told));
+        if let Some(holder) = &self.control {
+            lines.push(harmless(&words_of_robot(
+                &news::in_control(holder),
+                self.locale,
+            )));
+        }
         lines
     }
 

@@ -8,10 +8,14 @@ mod dap;
 mod flow;
 /// Programs in Python under debugpy.
 mod python;
+/// Their restart, and other processes at the door.
+mod python_again;
 /// Another version of what runs on a robot, from an editor.
 mod restart;
 /// Programs in JavaScript.
 mod script;
+/// Who debugs, for others, and in which language they hear of it.
+mod who;
 
 use crate::programs::Reachable;
 use crate::rig::TRIK;

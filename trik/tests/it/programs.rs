@@ -119,7 +119,7 @@ pub struct Running {
 }
 
 impl Running {
-    fn new(command: &mut Command) -> Self {
+    pub fn new(command: &mut Command) -> Self {
         let mut child = command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())

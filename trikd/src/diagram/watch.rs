@@ -26,6 +26,8 @@ pub struct Watch {
     has_moved: bool,
     /// Assigned since the last time.
     changed: BTreeSet<String>,
+    /// What was told when the program was loaded.
+    at_load: BTreeSet<String>,
     /// Not told yet.
     errors: Vec<String>,
     reported_at: Option<u32>,
@@ -41,6 +43,7 @@ impl Watch {
             is_new: false,
             has_moved: false,
             changed: BTreeSet::new(),
+            at_load: BTreeSet::new(),
             errors: Vec::new(),
             reported_at: None,
             had_variables: false,
@@ -167,11 +170,19 @@ impl Watch {
         }
     }
 
-    /// Errors since the last time, which are told at once.
+    /// Something wrong with the program is told before it begins; false: it was already.
+    pub(super) fn note_at_load(&mut self, line: String) -> bool {
+        self.at_load.insert(line)
+    }
+
+    /// Errors since the last time, which are told at once, but for faults that were told at load.
     fn tell_errors(&mut self, host: &Host) -> io::Result<Vec<String>> {
         let errors = std::mem::take(&mut self.errors);
         for error in &errors {
-            host.error(error)?;
+            match self.at_load.contains(error) {
+                true => host.known_error()?,
+                false => host.error(error)?,
+            }
         }
         Ok(errors)
     }

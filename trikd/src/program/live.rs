@@ -3,13 +3,12 @@
 //! Owns which diagram is meant, and what clients hear if none runs. The diagram answers by itself.
 
 use super::child::Language;
-use super::queue::Wish;
+use super::queue::{Meeting, Wish};
 use super::{Cause, Current, Supervisor};
 use crate::clients::debugging::OrderId;
-use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::{ALL, ToProgram, WhenGone};
-use std::net::SocketAddr;
+use crate::{limits, log};
 use std::path::Path;
 
 impl Supervisor {
@@ -83,7 +82,7 @@ impl Supervisor {
     pub(super) async fn debug(&mut self, asked: OrderId, wish: Wish) {
         match wish {
             Wish::Run(path) => self.run_debugged(asked, &path).await,
-            Wish::Debugpy(address, path) => self.run_python(asked, address, &path).await,
+            Wish::Debugpy(place, path) => self.run_python(asked, &place, &path).await,
             Wish::Order(order) => self.order(asked, &order),
             Wish::Overtaken => self.refuse(asked, news::OVERTAKEN),
         }
@@ -106,13 +105,14 @@ impl Supervisor {
         }
     }
 
-    /// Runs a Python program that lets itself be debugged by who listens at this address.
-    async fn run_python(&mut self, asked: OrderId, address: SocketAddr, path: &Path) {
+    /// Runs a Python program that lets itself be debugged by who listens at this place.
+    async fn run_python(&mut self, asked: OrderId, place: &Meeting, path: &Path) {
         self.end(Cause::Ordered("another program")).await;
         let name = self.name_of(path);
         let file = path.display().to_string();
         let first = ToProgram::Debugpy {
-            address: &address.to_string(),
+            address: &place.address.to_string(),
+            secret: place.secret.as_deref(),
             path: &file,
         };
         self.start(Language::Python, name, Some(path.to_owned()), first);
@@ -122,6 +122,18 @@ impl Supervisor {
         current.is_under_debugpy = true;
         let folder = path.parent().unwrap_or(path).display().to_string();
         self.around.clients.debug_begun(asked, &folder);
+    }
+
+    /// The log has once, for who looks after the robot, that a program does not reach its debugger.
+    pub(super) fn note_debugger(&mut self, said: &str) {
+        if let Some(current) = &mut self.current
+            && current.is_under_debugpy
+            && said.starts_with(news::NO_DEBUGGER_THERE)
+            && !std::mem::replace(&mut current.has_missed_debugger, true)
+        {
+            let name = &current.name;
+            tracing::warn!(target: log::PROGRAMS, "{name}: {}", said.trim_end());
+        }
     }
 
     /// An order for the debugger of the diagram that runs, which answers by itself.

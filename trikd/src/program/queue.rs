@@ -45,13 +45,22 @@ pub enum Command {
     Quit(oneshot::Sender<()>),
 }
 
+/// Where a program in Python meets its debugger.
+#[derive(Debug)]
+pub struct Meeting {
+    /// Who listens there.
+    pub address: SocketAddr,
+    /// What the program says first, so that nobody else is taken for it.
+    pub secret: Option<String>,
+}
+
 /// What somebody wants who debugs.
 #[derive(Debug)]
 pub enum Wish {
     /// End what runs and run this diagram, stopped before its first block.
     Run(PathBuf),
-    /// End what runs and run this Python program under debugpy, which connects to this address.
-    Debugpy(SocketAddr, PathBuf),
+    /// End what runs and run this Python program under debugpy, which connects to this place.
+    Debugpy(Meeting, PathBuf),
     /// Do this with the debugger of the diagram that runs.
     Order(String),
     /// It was to run a program, and somebody has stopped everything meanwhile.

@@ -69,7 +69,9 @@ impl Supervisor {
             Some(FromProgram::Info(text)) => self.show_last(current, Manner::Info, text),
             Some(FromProgram::Error(text)) => {
                 current.has_reported_error = true;
-                self.show_last(current, Manner::Error, text);
+                if !text.is_empty() {
+                    self.show_last(current, Manner::Error, text);
+                }
             }
             Some(
                 FromProgram::Events

@@ -53,6 +53,10 @@ pub const NOT_IN_JAVASCRIPT: &str = "a JavaScript program can only be paused, co
 pub const ONLY_PYTHON: &str = "only programs in Python run under debugpy";
 /// Why a request to run a program under debugpy is none.
 pub const NO_PORT: &str = "a port is wanted, a blank, and the name of a program";
+/// Why a request to run a program under debugpy with a secret is none.
+pub const NO_SECRET: &str = "a secret is 1 to 64 letters of a to z and A to Z and digits";
+/// How it begins when a program in Python says that it does not reach its debugger.
+pub const NO_DEBUGGER_THERE: &str = "the debugger at ";
 /// Why a request to debug is none.
 pub const NO_TAG: &str = "a request to debug is a number, a blank and an order";
 /// What all who debug hear when the diagram has ended, however that came.
@@ -60,6 +64,11 @@ pub const GONE: &str = "{\"state\":\"gone\"}";
 
 /// Why a client does not get control of the debugger.
 pub fn has_control(who: std::net::SocketAddr) -> String {
+    in_control(&who.to_string())
+}
+
+/// The same of one that is known by its name.
+pub fn in_control(who: &str) -> String {
     format!("{who} is in control")
 }
 

@@ -48,6 +48,8 @@ pub enum ToProgram<'a> {
     Debugpy {
         /// Address and port of who debugs it.
         address: &'a str,
+        /// What it says there first, so that nobody else is taken for it.
+        secret: Option<&'a str>,
         /// Its absolute path.
         path: &'a str,
     },
@@ -76,7 +78,7 @@ pub enum ToProgram<'a> {
 pub enum FromProgram<'a> {
     /// Output, as it shall be shown, with its newline.
     Print(&'a str),
-    /// A failure; the daemon puts nothing before it.
+    /// A failure; the daemon puts nothing before it. Without a text it was told before.
     Error(&'a str),
     /// Something a person may want to know.
     Info(&'a str),
@@ -120,6 +122,9 @@ pub enum FromProgram<'a> {
 
 /// Instead of a client in [`FromProgram::Debug`]: all that debug.
 pub const ALL: u32 = 0;
+
+/// Instead of a secret in [`ToProgram::Debugpy`]: none is wanted.
+const NO_SECRET: &str = "-";
 
 /// The words of [`ToProgram`], in the order of the document.
 pub const TO_PROGRAM: [&str; 15] = [
@@ -170,7 +175,11 @@ impl<'a> ToProgram<'a> {
             Self::Patch { when_gone, path } => format!("patch:{}:{path}", when_gone.word()),
             Self::Set(text) => format!("set:{text}"),
             Self::Debugged(path) => format!("debug-file:{path}"),
-            Self::Debugpy { address, path } => format!("debugpy:{address} {path}"),
+            Self::Debugpy {
+                address,
+                secret,
+                path,
+            } => format!("debugpy:{address} {} {path}", secret.unwrap_or(NO_SECRET)),
             Self::Debug { client, tag, order } => format!("debug:{client} {tag} {order}"),
             Self::DebugLeft => "debug-left:".to_owned(),
             Self::Reply { number, text } => match text {
@@ -209,8 +218,13 @@ impl<'a> ToProgram<'a> {
             "set" => Self::Set(rest),
             "debug-file" => Self::Debugged(rest),
             "debugpy" => {
-                let (address, path) = rest.split_once(' ')?;
-                Self::Debugpy { address, path }
+                let (address, rest) = rest.split_once(' ')?;
+                let (secret, path) = rest.split_once(' ')?;
+                Self::Debugpy {
+                    address,
+                    secret: (secret != NO_SECRET).then_some(secret),
+                    path,
+                }
             }
             "debug" => {
                 let (client, rest) = rest.split_once(' ')?;
@@ -320,7 +334,9 @@ mod tests {
             client: u32,
         ) {
             let text = text.as_str();
+            let secret = is_wanted.then_some("s3cret");
             for said in [
+                ToProgram::Debugpy { address: "[::1]:7", secret, path: text },
                 ToProgram::File(text),
                 ToProgram::Script(text),
                 ToProgram::Start,
@@ -332,7 +348,6 @@ mod tests {
                 ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
                 ToProgram::Set(text),
                 ToProgram::Debugged(text),
-                ToProgram::Debugpy { address: "[::1]:7", path: text },
                 ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
                 ToProgram::DebugLeft,
                 ToProgram::Reply { number: client, text: is_wanted.then_some(text) },
@@ -375,7 +390,8 @@ mod tests {
             let second = match word {
                 "patch" => "end:x",
                 "debug" => "1 2 x",
-                "reply" | "debugpy" => "1 x",
+                "reply" => "1 x",
+                "debugpy" => "1 - x",
                 _ => "1:x",
             };
             let payload = format!("{word}:{second}");

@@ -1477,7 +1477,7 @@ def _tell_failure():
 _debugger = None
 
 
-def _attach(address):
+def _attach(address, secret):
     """Lets the program be debugged by who listens there; returns when all breakpoints are known."""
     global _debugger
     # It would print that modules inside the interpreter are not seen, which no program of a robot has.
@@ -1487,14 +1487,37 @@ def _attach(address):
     except ImportError:
         _channel.send('error', 'debugpy is needed to debug Python, and this robot has none: type there: %s -m pip install debugpy\n' % sys.executable)
         sys.exit(1)
+    import socket
     host, _, port = address.rpartition(':')
     debugpy.configure(subProcess=False)
+    connect = socket.socket.connect
+
+    def introduce(self, place):
+        for left in (2, 1, 0):
+            try:
+                connect(self, place)
+                break
+            except socket.timeout:
+                raise
+            except OSError as error:
+                # A network may be gone for a moment.
+                if not left:
+                    raise
+                if left == 2:
+                    _channel.send('info', 'the debugger at %s cannot be reached: %s; trying again' % (address, error))
+                time.sleep(1)
+        if secret != '-':
+            # Before debugpy says anything, so that no other process is taken for this one.
+            self.sendall((secret + '\n').encode())
     try:
+        socket.socket.connect = introduce
         debugpy.connect((host.strip('[]'), int(port)))
     except BaseException as error:
         # A debugger that is not there ends the program inside debugpy.
         _channel.send('error', 'the debugger at %s cannot be reached: %s\n' % (address, error))
         sys.exit(1)
+    finally:
+        socket.socket.connect = connect
     debugpy.wait_for_client()
     _debugger = debugpy
 
@@ -1598,9 +1621,9 @@ def _main():
     if word == 'start':
         script.run()
         return
-    address = None
+    address = secret = None
     if word == 'debugpy':
-        address, _, rest = rest.partition(' ')
+        address, secret, rest = rest.split(' ', 2)
     sys.path.insert(0, os.path.dirname(rest))
     sys.argv = [rest]
     _direct_space['__file__'] = rest
@@ -1609,7 +1632,7 @@ def _main():
             text = file.read()
         code = compile(text, rest, 'exec')
         if address:
-            _attach(address)
+            _attach(address, secret)
         exec(code, _direct_space)
     except SystemExit:
         raise

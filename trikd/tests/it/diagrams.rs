@@ -256,6 +256,48 @@ fn errors_name_the_block_and_stay_with_the_diagram() {
 }
 
 #[test]
+fn each_mistake_of_a_diagram_is_told_once_with_its_block_and_place() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let motor = sketch.block("TrikV6EnginesForward", &[("Ports", "M1"), ("Power", "4 *")]);
+    // Nothing leads to this one, and the first one ends its thread.
+    let odd = sketch.block("Function", &[("Body", "n = 1\nprint(n +)")]);
+    let fork = sketch.block("Fork", &[]);
+    let other = sketch.block("Loop", &[("Iterations", "3")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, fork, motor, end]);
+    sketch.chain(&[fork, other, end]);
+    sketch.chain(&[odd, end]);
+    let save = sketch.qrs().expect("a save");
+    for language in ["en_US.UTF-8", "ru_RU.UTF-8"] {
+        let robot = robot(&["--language", language]);
+        let mut client = robot.client("control");
+        // Nothing of the first run keeps the second one from telling.
+        for _ in 0..2 {
+            upload(&mut client, "odd.qrs", &save);
+            client.send("run:odd.qrs");
+            client.until("info: odd.qrs has started");
+            let mut told = Vec::new();
+            loop {
+                let line = client.next().expect("a message");
+                if line.starts_with("info: odd.qrs has failed") {
+                    break;
+                }
+                told.push(line);
+            }
+            // Found at load, and when its block is reached: what nothing leads to is not looked at.
+            assert_eq!(told.len(), 2, "{told:#?}");
+            assert!(told[0].starts_with("info: "), "{told:#?}");
+            assert!(told[1].starts_with("error: main: "), "{told:#?}");
+            assert!(told[1].contains(" 1:3 "), "{told:#?}");
+            let loops = told.iter().filter(|line| line.contains(" Loop: "));
+            assert_eq!(loops.count(), 1, "{told:#?}");
+            assert!(told[0].contains(": main: "), "{told:#?}");
+        }
+    }
+}
+
+#[test]
 fn a_diagram_reads_what_the_tree_has_and_says_what_it_has_not() {
     let robot = robot(&[]);
     let mut client = robot.client("control");

@@ -13,6 +13,8 @@ mod crash;
 mod crowds;
 /// The debugger of diagrams, with several clients.
 mod debugging;
+/// The way of programs in Python to their debugger.
+mod debugpy;
 /// Diagrams of TRIK Studio.
 mod diagrams;
 /// What documents say, byte for byte.

@@ -1,12 +1,17 @@
-//! The adapter of debugpy as a process: requests to it, and what it says.
+//! The adapter of debugpy as a process: requests to it, what it says, and the way to it for a program.
 //!
-//! Owns the process and its end. Knows no request.
+//! Owns the process and its end, and that no other process of this computer is taken for the program. Knows no request.
 
 use super::super::client::Refused;
 use crate::limits;
 use crate::wire::{self, Frame, Frames};
+use rustix::net::{
+    AddressFamily, SocketFlags, SocketType, bind, connect, getsockname, socket_with,
+};
 use serde_json::Value;
-use std::io::BufReader;
+use std::io::{self, BufReader};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, TcpStream};
+use std::os::fd::OwnedFd;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
@@ -23,7 +28,51 @@ pub(super) struct Adapter {
     process: Child,
     to: ChildStdin,
     from: Receiver<Value>,
+    way: Option<Way>,
 }
+
+/// A way to the adapter, from a port that is ours before the adapter is there, and that no other process can come from.
+struct Way {
+    socket: OwnedFd,
+    port: u16,
+}
+
+impl Way {
+    fn new() -> io::Result<Self> {
+        // Without SO_REUSEADDR no other socket gets this port, bound or not (socket(7)).
+        let flags = SocketFlags::CLOEXEC;
+        let socket = socket_with(AddressFamily::INET, SocketType::STREAM, flags, None)?;
+        bind(&socket, &SocketAddrV4::new(Ipv4Addr::LOCALHOST, 0))?;
+        let own = SocketAddr::try_from(getsockname(&socket)?)?;
+        let port = own.port();
+        Ok(Self { socket, port })
+    }
+
+    fn to(self, port: u16) -> io::Result<TcpStream> {
+        connect(&self.socket, &SocketAddrV4::new(Ipv4Addr::LOCALHOST, port))?;
+        let stream = TcpStream::from(self.socket);
+        stream.set_nodelay(true)?;
+        Ok(stream)
+    }
+}
+
+/// The adapter, which takes no connection but that of its one argument: it waits for a program at a port of this computer, and
+/// would take the first process of whichever user for it. Modules of the current directory are not found.
+const ADAPTER: &str = "\
+import sys
+sys.path = [place for place in sys.path if place not in ('', '.')]
+import runpy, socket
+own = int(sys.argv.pop())
+accept = socket.socket.accept
+def accept_own(self):
+    while True:
+        peer, address = accept(self)
+        if address[1] == own:
+            return peer, address
+        peer.close()
+socket.socket.accept = accept_own
+runpy.run_module('debugpy.adapter', run_name='__main__', alter_sys=True)
+";
 
 /// Modules of the current directory are not found by it: a file json.py beside a program would run on this computer. Pythons
 /// before 3.11 do not know the variable.
@@ -55,8 +104,9 @@ impl Adapter {
     pub fn start(python: &str) -> Result<Self, Refused> {
         must_have(python)?;
         let no = |why: std::io::Error| Refused::new(format!("debugpy cannot be started: {why}"));
+        let way = Way::new().map_err(no)?;
         let mut process = Command::new(python)
-            .args(["-m", "debugpy.adapter"])
+            .args(["-c", ADAPTER, &way.port.to_string()])
             .env(SAFE.0, SAFE.1)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -83,12 +133,22 @@ impl Adapter {
             process,
             to,
             from: receiver,
+            way: Some(way),
         })
     }
 
     /// Gives it a message; one that is gone is heard of by its end.
     pub fn send(&mut self, message: &Value) {
         let _ = wire::write(&mut self.to, message);
+    }
+
+    /// A connection to where it waits for a program.
+    ///
+    /// # Errors
+    /// There is one already, or nobody waits.
+    pub fn connect(&mut self, port: u16) -> io::Result<TcpStream> {
+        let way = self.way.take();
+        way.ok_or(io::ErrorKind::AlreadyExists)?.to(port)
     }
 
     /// What it says next, waiting at most so long.

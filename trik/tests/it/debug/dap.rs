@@ -153,6 +153,11 @@ impl Editor {
         answer["result"].as_str().expect("a value").to_owned()
     }
 
+    /// Its process.
+    pub(super) fn id(&self) -> u32 {
+        self.process.id()
+    }
+
     /// As when its computer is switched off.
     pub(super) fn kill(mut self) {
         self.process.kill().expect("an end");

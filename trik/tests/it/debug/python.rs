@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Line 3 is in a function, line 5 turns a motor, and line 9 never ends.
-const DRIVING: &str = "\
+pub(super) const DRIVING: &str = "\
 # A program in Python.
 def double(k):
     return k * 2
@@ -26,7 +26,7 @@ while True:
 ";
 
 /// The python of the environment, and a robot whose programs run in it too.
-fn debugged() -> Option<(String, Reachable)> {
+pub(super) fn debugged() -> Option<(String, Reachable)> {
     let Ok(python) = std::env::var("TRIK_DEBUGPY_PYTHON") else {
         Need::Extra.missing("TRIK_DEBUGPY_PYTHON is not set");
         return None;
@@ -37,7 +37,7 @@ fn debugged() -> Option<(String, Reachable)> {
 }
 
 /// An editor that has launched a program, and the number of that request.
-fn launched(python: &str, robot: &Reachable, text: &str, more: Value) -> (Editor, u64) {
+pub(super) fn launched(python: &str, robot: &Reachable, text: &str, more: Value) -> (Editor, u64) {
     let file = robot.robot.home.0.file("x.py", text);
     let mut editor = Editor::start();
     editor.good("initialize", json!({"adapterID": "trik"}));
@@ -49,19 +49,19 @@ fn launched(python: &str, robot: &Reachable, text: &str, more: Value) -> (Editor
     (editor, launch)
 }
 
-fn points(robot: &Reachable, lines: &[u32]) -> Value {
+pub(super) fn points(robot: &Reachable, lines: &[u32]) -> Value {
     let lines = lines.iter().map(|line| json!({ "line": line }));
     let lines: Vec<_> = lines.collect();
     let file = robot.robot.home.0.path("x.py");
     json!({"source": {"path": file}, "breakpoints": lines})
 }
 
-fn duty(robot: &Reachable) -> i8 {
+pub(super) fn duty(robot: &Reachable) -> i8 {
     robot.robot.duty(3).expect("a motor")
 }
 
 /// Where it is stopped: the thread, and the innermost frame.
-fn top(editor: &mut Editor, stopped: &Value) -> (Value, Value) {
+pub(super) fn top(editor: &mut Editor, stopped: &Value) -> (Value, Value) {
     let thread = stopped["threadId"].clone();
     let mut stack = editor.good("stackTrace", json!({ "threadId": thread }));
     (thread, stack["stackFrames"][0].take())
@@ -202,6 +202,9 @@ fn an_error_that_nobody_catches_is_shown_where_it_is() {
         told["body"]["output"].to_string().contains("line 3"),
         "{told}"
     );
+    let told = editor.wait(|message| message["body"]["category"] == "console");
+    let told = told["body"]["output"].to_string();
+    assert!(told.contains("x.py has failed with exit code 1"), "{told}");
     assert_eq!(editor.event("exited")["exitCode"], 1);
     editor.event("terminated");
     editor.end();

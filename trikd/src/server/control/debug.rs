@@ -7,9 +7,9 @@ use super::Session;
 use crate::blame::Blame;
 use crate::clients::debugging::OrderId;
 use crate::program::child::Language;
-use crate::program::{Command, Wish};
+use crate::program::{Command, Meeting, Wish};
 use crate::protocol::news;
-use crate::{log, scripts};
+use crate::{limits, log, scripts};
 use lang_diagram::debug::order::{NoOrder, Order};
 use std::fmt;
 use std::net::SocketAddr;
@@ -38,6 +38,8 @@ enum Refusal {
     NoPython,
     /// No port, or no name behind it.
     NoPort,
+    /// A secret that is none.
+    NoSecret,
 }
 
 impl Refusal {
@@ -49,7 +51,8 @@ impl Refusal {
             | Self::Order(_)
             | Self::NoDebugger
             | Self::NoPython
-            | Self::NoPort => Blame::Client,
+            | Self::NoPort
+            | Self::NoSecret => Blame::Client,
             Self::Program(why) => why.blame(),
         }
     }
@@ -65,8 +68,15 @@ impl fmt::Display for Refusal {
             Self::NoDebugger => out.write_str(news::NO_DEBUGGER),
             Self::NoPython => out.write_str(news::ONLY_PYTHON),
             Self::NoPort => out.write_str(news::NO_PORT),
+            Self::NoSecret => out.write_str(news::NO_SECRET),
         }
     }
+}
+
+/// Whether a word is one that a program can say to its debugger.
+fn is_secret(word: &str) -> bool {
+    (1..=limits::DEBUG_SECRET_BYTES).contains(&word.len())
+        && word.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
 impl Session {
@@ -108,10 +118,17 @@ impl Session {
         Ok(())
     }
 
-    /// The port of this client that debugpy connects to, and the name of the program.
+    /// The port of this client that debugpy connects to, perhaps a secret, and the name of the program.
     async fn run_python(&self, asked: OrderId, words: &str) -> Result<(), Refusal> {
         let (port, name) = words.split_once(' ').ok_or(Refusal::NoPort)?;
+        let (port, secret) = match port.split_once(':') {
+            Some((port, secret)) => (port, Some(secret)),
+            None => (port, None),
+        };
         let port = port.parse().map_err(|_| Refusal::NoPort)?;
+        if !secret.is_none_or(is_secret) {
+            return Err(Refusal::NoSecret);
+        }
         // To the computer that asks, and to no other.
         let address = SocketAddr::new(self.client.peer.ip(), port);
         self.takes_debugger()?;
@@ -120,7 +137,11 @@ impl Session {
         if Language::of(&path) != Language::Python {
             return Err(Refusal::NoPython);
         }
-        let wish = Wish::Debugpy(address, path);
+        let place = Meeting {
+            address,
+            secret: secret.map(str::to_owned),
+        };
+        let wish = Wish::Debugpy(place, path);
         self.command(Command::Debug(asked, wish)).await;
         Ok(())
     }
