@@ -260,3 +260,7 @@ pub const BOX_MIB: u16 = 32;
 pub(crate) const TOLD_MS: u64 = 100;
 /// The same while nothing moves in it.
 pub(crate) const TOLD_AGAIN_MS: u64 = 1_000;
+/// Letters of a tuple in a line about a difference.
+pub(crate) const DIFF_SHOWN_CHARS: usize = 60;
+/// Panels of one node in a picture of differences: not each ray of a lidar.
+pub(crate) const DIFF_PANELS_MAX: usize = 8;
