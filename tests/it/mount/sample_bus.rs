@@ -432,7 +432,7 @@ open(M + '/stop', 'w').write('1')
 #[test]
 fn what_a_source_gives_is_in_a_ring_of_its_own_if_that_is_asked_for() {
     let config = "trikfs = {
-  s = { src = fake{ data = '\\1\\2\\3\\4', period_ms = 20, loop = true }, format = 'u8 x', on_event = true, raw = true,
+  s = { src = fake{ data = '\\1\\2\\3\\4', period_ms = 20, loop = true }, input_tuple_size = 1, format = 'u8 x', on_event = true, raw = true,
     converter = function(a_s, a, b_s, b)
       if ba.u8(a, 0) == 3 then error('three') end
       ba.u8(b, 0, ba.u8(a, 0) * 2)
