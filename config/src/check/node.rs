@@ -126,9 +126,7 @@ impl NodeFields<'_, '_> {
         };
         self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
-        self.check_read_back(&node, read_only)?;
-        self.check_isolate(&node)?;
-        self.check_raw(&node)?;
+        self.check_flags(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
     }
@@ -356,6 +354,13 @@ impl NodeFields<'_, '_> {
             return Err(self.problem("isolate", reason));
         }
         Ok(())
+    }
+
+    /// Those that say yes or no fit the rest.
+    fn check_flags(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
+        self.check_read_back(node, read_only)?;
+        self.check_isolate(node)?;
+        self.check_raw(node)
     }
 
     /// There is somebody who takes samples in the background and publishes them.

@@ -164,7 +164,10 @@ fn a_table_has_each_number_in_its_column_and_no_formula() {
     assert_eq!(some, "time_s,motors/M1.power,fault\n5.0,-60,\n");
     let words = ["export", "run.mcap", "-o", "run.ods"];
     let refused = why_not(&board, &words);
-    assert!(refused.contains("its name ends with .csv"), "{refused}");
+    assert!(
+        refused.contains("its name ends with .csv or .parquet"),
+        "{refused}"
+    );
     // The older spelling of the ending.
     trik(&board, &["export", "run.mcap", "--csv", "-o", "table"]).good();
     let old = fs::read_to_string(board.dir().join("table")).expect("a table");
