@@ -84,6 +84,8 @@ pub struct NodeDescription {
     pub share: Option<bool>,
     /// Whether its shared libraries and inline C run in a process of their own.
     pub isolate: bool,
+    /// Whether the sample bus has what the source gives before it is converted, too.
+    pub raw: bool,
     /// Equal for equal descriptions: plain fields, stripped bytecode, upvalues (attributes excluded, they have their own).
     pub fingerprint: u128,
 }

@@ -6,6 +6,7 @@
 use crate::cdr::{Reader, Writer};
 use crate::error::Error;
 use crate::layout::{Field, Layout, text};
+use crate::limits::TUPLE_BYTES_MAX;
 use crate::standard::stamp;
 use std::collections::BTreeMap;
 
@@ -26,6 +27,8 @@ pub struct Node {
     pub rest: String,
     /// Other names of it.
     pub aliases: Vec<String>,
+    /// Not the node, but what its source gave before it was converted: bytes, under a topic of their own.
+    pub is_raw: bool,
 }
 
 /// Keys of a channel's metadata.
@@ -35,6 +38,10 @@ const ABOUT: &str = "about";
 const ACCESS: &str = "access";
 const REST: &str = "rest";
 const ALIASES: &str = "aliases";
+const RAW_OF: &str = "raw_of";
+const BYTES: &str = "bytes";
+/// What the topics of bytes of sources begin with.
+const RAW: &str = "raw/";
 
 impl Node {
     /// A sensor of this path and format, of which nothing else is known.
@@ -47,16 +54,37 @@ impl Node {
             is_written: false,
             rest: String::new(),
             aliases: Vec::new(),
+            is_raw: false,
+        }
+    }
+
+    /// What the source of the node at this path gave: tuples of so many bytes.
+    pub fn raw(path: &str, tuple_bytes: usize) -> Self {
+        Self {
+            is_raw: true,
+            ..Self::sensor(path, &format!("u8 x {tuple_bytes}"))
         }
     }
 
     /// Its topic.
     pub(crate) fn topic(&self) -> String {
-        format!("/{}", self.path)
+        format!("/{}", self.name())
+    }
+
+    /// The topic without the `/` before it.
+    pub(crate) fn name(&self) -> String {
+        let before = if self.is_raw { RAW } else { "" };
+        format!("{before}{}", self.path)
     }
 
     /// What the channel says of it.
     pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
+        if self.is_raw {
+            // Without a format it is no node, also for readers that know nothing of raw bytes.
+            let bytes = Layout::parse(&self.format).map_or(0, |layout| layout.size());
+            let all = [(RAW_OF, self.path.clone()), (BYTES, bytes.to_string())];
+            return all.map(|(key, value)| (key.to_owned(), value)).into();
+        }
         let access = if self.is_written { "rw" } else { "r" };
         let all = [
             (FORMAT, self.format.clone()),
@@ -73,6 +101,11 @@ impl Node {
     /// The node of a channel; None if it is one of something else.
     pub(crate) fn of_channel(topic: &str, metadata: &BTreeMap<String, String>) -> Option<Self> {
         let of = |key: &str| metadata.get(key).cloned().unwrap_or_default();
+        if let Some(path) = metadata.get(RAW_OF) {
+            let bytes = of(BYTES).parse().ok()?;
+            let is_one = (1..=TUPLE_BYTES_MAX).contains(&bytes);
+            return is_one.then(|| Self::raw(path, bytes));
+        }
         Some(Self {
             path: topic.strip_prefix('/')?.to_owned(),
             format: metadata.get(FORMAT)?.clone(),
@@ -81,6 +114,7 @@ impl Node {
             is_written: of(ACCESS).contains('w'),
             rest: of(REST),
             aliases: of(ALIASES).lines().map(str::to_owned).collect(),
+            is_raw: false,
         })
     }
 }
@@ -200,6 +234,17 @@ mod tests {
             Some(node)
         );
         assert_eq!(Node::of_channel("/faults", &BTreeMap::new()), None);
+        let raw = Node::raw("motors/M1", 3);
+        assert_eq!(raw.topic(), "/raw/motors/M1");
+        assert_eq!(
+            Node::of_channel(&raw.topic(), &raw.metadata()),
+            Some(raw.clone())
+        );
+        for bytes in ["", "0", "-1", "4194305", "x"] {
+            let mut metadata = raw.metadata();
+            metadata.insert(BYTES.to_owned(), bytes.to_owned());
+            assert_eq!(Node::of_channel(&raw.topic(), &metadata), None, "{bytes}");
+        }
     }
 
     #[test]

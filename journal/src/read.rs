@@ -27,6 +27,8 @@ pub struct Reader<F> {
     summary: Summary,
     nodes: Vec<Node>,
     layouts: Vec<Layout>,
+    /// Nodes whose sources are recorded too, by their paths.
+    raws: Vec<String>,
     /// What each channel carries.
     carries: HashMap<u16, Carries>,
     /// Reads forwards; None before the first event is wanted.
@@ -42,6 +44,8 @@ pub struct Reader<F> {
 enum Carries {
     /// Samples of the node with this number, in the layout with this number.
     Samples(usize, usize),
+    /// What the source gave of which `raws` has the node, in tuples of so many bytes.
+    Raw(usize, usize),
     Faults,
     Lines(Story),
 }
@@ -53,6 +57,17 @@ pub struct Event {
     pub unix_ns: u64,
     /// What.
     pub what: EventKind,
+}
+
+/// What the source of a node gave.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RawEvent {
+    /// When, in ns since 1970.
+    pub unix_ns: u64,
+    /// Among `raws`.
+    pub raw: usize,
+    /// Its bytes as they were before the converter, or the errno and the reason why it gave none.
+    pub given: Result<Vec<u8>, (i32, String)>,
 }
 
 /// What happened.
@@ -118,6 +133,7 @@ impl<F: Read + Seek> Reader<F> {
             summary,
             nodes: Vec::new(),
             layouts: Vec::new(),
+            raws: Vec::new(),
             carries: HashMap::new(),
             forwards: None,
             from_ns: 0,
@@ -141,6 +157,15 @@ impl<F: Read + Seek> Reader<F> {
                     let Some(node) = Node::of_channel(topic, &channel.metadata) else {
                         continue;
                     };
+                    if node.is_raw {
+                        if self.raws.len() == NODES_MAX {
+                            return Err(Error::TooMany("nodes"));
+                        }
+                        let bytes = Layout::parse(&node.format)?.size();
+                        let raw = self.raw_of(node.path);
+                        self.carries.insert(channel.id, Carries::Raw(raw, bytes));
+                        continue;
+                    }
                     if self.layouts.len() == NODES_MAX {
                         return Err(Error::TooMany("nodes"));
                     }
@@ -160,6 +185,20 @@ impl<F: Read + Seek> Reader<F> {
         Ok(())
     }
 
+    /// The number of the source of this node.
+    fn raw_of(&mut self, path: String) -> usize {
+        let known = self.raws.iter().position(|other| *other == path);
+        known.unwrap_or_else(|| {
+            self.raws.push(path);
+            self.raws.len() - 1
+        })
+    }
+
+    /// The paths of the nodes whose sources are recorded too.
+    pub fn raws(&self) -> &[String] {
+        &self.raws
+    }
+
     /// The nodes, in the order in which they were added.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
@@ -174,7 +213,7 @@ impl<F: Read + Seek> Reader<F> {
     pub fn layouts_of(&self, node: usize) -> Vec<usize> {
         let of_node = self.carries.values().filter_map(|carries| match carries {
             Carries::Samples(number, layout) if *number == node => Some(*layout),
-            Carries::Samples(..) | Carries::Faults | Carries::Lines(_) => None,
+            Carries::Samples(..) | Carries::Raw(..) | Carries::Faults | Carries::Lines(_) => None,
         });
         let mut all: Vec<usize> = of_node.collect();
         all.sort_unstable();
@@ -309,6 +348,54 @@ impl<F: Read + Seek> Reader<F> {
         self.only.push(story.topic().to_owned());
     }
 
+    /// From now on `next_raw` gives what sources gave at this moment and after it.
+    pub fn seek_raw(&mut self, unix_ns: u64) {
+        self.seek(unix_ns);
+        let raws = self.raws.iter();
+        self.only = raws.map(|path| Node::raw(path, 1).topic()).collect();
+        self.only.push(FAULTS.to_owned());
+    }
+
+    /// What a source gave next, in the order of time; call `seek_raw` before.
+    ///
+    /// # Errors
+    /// The file cannot be read, or contradicts itself.
+    pub fn next_raw(&mut self) -> Result<Option<RawEvent>, Error> {
+        while let Some((id, unix_ns, data)) = self.message()? {
+            if let Some(event) = self.raw_event(id, unix_ns, &data)? {
+                return Ok(Some(event));
+            }
+        }
+        Ok(None)
+    }
+
+    fn raw_event(&self, id: u16, unix_ns: u64, data: &[u8]) -> Result<Option<RawEvent>, Error> {
+        let (raw, given) = match self.carries.get(&id) {
+            Some(&Carries::Raw(raw, bytes)) => {
+                let tuple = node::decode(&Layout::Bytes(bytes), data);
+                let what =
+                    || Error::Damaged(format!("a message of raw/{} is none", self.raws[raw]));
+                (raw, Ok(tuple.ok_or_else(what)?))
+            }
+            Some(Carries::Faults) => {
+                let fault = Log::decode(data)
+                    .ok_or_else(|| Error::Damaged("a message of faults is none".to_owned()))?;
+                let of = |path: &String| Node::raw(path, 1).name() == fault.name;
+                let Some(raw) = self.raws.iter().position(of) else {
+                    return Ok(None);
+                };
+                let errno = i32::try_from(fault.errno).unwrap_or(i32::MAX);
+                (raw, Err((errno, fault.text)))
+            }
+            Some(Carries::Samples(..) | Carries::Lines(_)) | None => return Ok(None),
+        };
+        Ok(Some(RawEvent {
+            unix_ns,
+            raw,
+            given,
+        }))
+    }
+
     /// The next event, in the order of time.
     ///
     /// # Errors
@@ -318,35 +405,32 @@ impl<F: Read + Seek> Reader<F> {
         reason = "it fails, and a position can be chosen in between"
     )]
     pub fn next(&mut self) -> Result<Option<Event>, Error> {
-        loop {
-            let forwards = match &mut self.forwards {
-                Some(forwards) => forwards,
-                none => {
-                    let mut options = IndexedReaderOptions::new()
-                        .with_order(ReadOrder::LogTime)
-                        .starting_at(self.from_ns)
-                        .with_record_length_limit(RECORD_BYTES_MAX);
-                    if !self.only.is_empty() {
-                        options = options.include_topics(self.only.clone());
-                    }
-                    none.insert(new_indexed(&self.summary, options)?)
-                }
-            };
-            let Some((id, unix_ns, data)) = step(
-                forwards,
-                &self.summary,
-                &mut self.file,
-                &mut self.chunk,
-                &mut 0,
-            )?
-            else {
-                return Ok(None);
-            };
+        while let Some((id, unix_ns, data)) = self.message()? {
             let event = self.event(id, unix_ns, &data);
             if let Some(event) = event? {
                 return Ok(Some(event));
             }
         }
+        Ok(None)
+    }
+
+    /// The next message of those that are wanted: its channel, its time, its bytes.
+    fn message(&mut self) -> Result<Option<(u16, u64, Vec<u8>)>, Error> {
+        let forwards = match &mut self.forwards {
+            Some(forwards) => forwards,
+            none => {
+                let mut options = IndexedReaderOptions::new()
+                    .with_order(ReadOrder::LogTime)
+                    .starting_at(self.from_ns)
+                    .with_record_length_limit(RECORD_BYTES_MAX);
+                if !self.only.is_empty() {
+                    options = options.include_topics(self.only.clone());
+                }
+                none.insert(new_indexed(&self.summary, options)?)
+            }
+        };
+        let (file, chunk) = (&mut self.file, &mut self.chunk);
+        step(forwards, &self.summary, file, chunk, &mut 0)
     }
 
     /// What each node had before this moment, the newest of it.
@@ -410,7 +494,7 @@ impl<F: Read + Seek> Reader<F> {
     fn event(&self, id: u16, unix_ns: u64, data: &[u8]) -> Result<Option<Event>, Error> {
         let damaged = |what: &str| Error::Damaged(format!("a message of {what} is none"));
         let what = match self.carries.get(&id) {
-            None => return Ok(None),
+            None | Some(Carries::Raw(..)) => return Ok(None),
             Some(&Carries::Samples(node, layout)) => {
                 let name = &self.nodes[node].path;
                 let tuple = node::decode(&self.layouts[layout], data);

@@ -5,8 +5,11 @@
 
 use crate::chunk::HEADER_BYTES;
 use crate::error::Error;
+use crate::limits::RECORD_BYTES_MAX;
+use crate::standard::Log;
+use crate::write::Story;
 use mcap::records::{Record as Raw, op};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Something that a live recording says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +54,74 @@ pub fn records(bytes: &[u8]) -> Result<Vec<Record>, Error> {
     }
 }
 
+/// The lines of stories in a recording that comes piece by piece from somewhere else: all that others want of it who see the
+/// nodes themselves.
+#[derive(Debug, Default)]
+pub struct Lines {
+    /// What of a record has come.
+    rest: Vec<u8>,
+    stories: HashMap<u16, Story>,
+}
+
+impl Lines {
+    /// The lines that are whole with this piece, each with its time in ns since 1970.
+    ///
+    /// # Errors
+    /// It is no recording, or has a record that is too large.
+    pub fn take(&mut self, piece: &[u8]) -> Result<Vec<(Story, u64, Log)>, Error> {
+        self.rest.extend_from_slice(piece);
+        let whole = whole(&self.rest)?;
+        let records = records(&self.rest[..whole])?;
+        self.rest.drain(..whole);
+        let mut lines = Vec::new();
+        for record in records {
+            match record {
+                Record::Schema(..) => {}
+                Record::Channel { id, topic, .. } => match Story::of(&topic) {
+                    Some(story) => drop(self.stories.insert(id, story)),
+                    None => drop(self.stories.remove(&id)),
+                },
+                Record::Message(id, at_ns, bytes) => {
+                    if let Some(story) = self.stories.get(&id)
+                        && let Some(line) = Log::decode(&bytes)
+                    {
+                        lines.push((*story, at_ns, line));
+                    }
+                }
+            }
+        }
+        Ok(lines)
+    }
+}
+
+/// How many of these bytes are whole records.
+fn whole(bytes: &[u8]) -> Result<usize, Error> {
+    if bytes.len() < mcap::MAGIC.len() && mcap::MAGIC.starts_with(bytes) {
+        return Ok(0);
+    }
+    let mut at = match bytes.starts_with(mcap::MAGIC) {
+        true => mcap::MAGIC.len(),
+        false => 0,
+    };
+    while let Some(header) = bytes.get(at..at + HEADER_BYTES) {
+        let length = header[1..].try_into().map_or(u64::MAX, u64::from_le_bytes);
+        let most = RECORD_BYTES_MAX as u64;
+        if length > most {
+            return Err(Error::TooLarge {
+                what: "a record",
+                bytes: length,
+                most,
+            });
+        }
+        let next = at + HEADER_BYTES + usize::try_from(length).unwrap_or(usize::MAX);
+        if next > bytes.len() {
+            break;
+        }
+        at = next;
+    }
+    Ok(at)
+}
+
 #[allow(clippy::wildcard_enum_match_arm, reason = "kinds of another crate")]
 fn record(opcode: u8, body: &[u8]) -> Result<Option<Record>, Error> {
     Ok(
@@ -79,7 +150,41 @@ fn record(opcode: u8, body: &[u8]) -> Result<Option<Record>, Error> {
 mod tests {
     use super::*;
     use crate::node::Node;
+    use crate::standard::Level;
     use crate::write::{Out, Writer};
+
+    #[test]
+    fn lines_come_out_of_pieces_of_any_size() {
+        let out = Out::default();
+        let mut writer = Writer::live(out.clone(), "test").unwrap();
+        let node = writer.add(&Node::sensor("a/b", "i32 x")).unwrap();
+        let line = |text: &str| Log {
+            level: Level::Info,
+            name: "x.py".to_owned(),
+            text: text.to_owned(),
+            errno: 0,
+        };
+        writer.line(Story::Output, 4, &line("first")).unwrap();
+        writer.sample(node, 5, &7_i32.to_le_bytes()).unwrap();
+        writer.attach(6, "a", "b", b"programs").unwrap();
+        writer.line(Story::Diagram, 7, &line("{}")).unwrap();
+        let bytes = out.take();
+        for size in [1, 7, 64, bytes.len()] {
+            let mut lines = Lines::default();
+            let all: Vec<_> = (bytes.chunks(size))
+                .flat_map(|piece| lines.take(piece).unwrap())
+                .map(|(story, at, line)| (story, at, line.text))
+                .collect();
+            let wanted = [
+                (Story::Output, 4, "first".to_owned()),
+                (Story::Diagram, 7, "{}".to_owned()),
+            ];
+            assert_eq!(all, wanted, "pieces of {size} bytes");
+        }
+        let mut hostile = vec![op::MESSAGE];
+        hostile.extend_from_slice(&u64::MAX.to_le_bytes());
+        assert!(Lines::default().take(&hostile).is_err());
+    }
 
     #[test]
     fn what_a_live_recording_says_comes_in_order() {

@@ -195,7 +195,7 @@ impl<W: Write + Seek> Writer<W> {
             return Err(Error::TooMany("nodes"));
         }
         let layout = Layout::parse(&node.format)?;
-        let name = schema_of(&self.names.take(type_of(&node.path)));
+        let name = schema_of(&self.names.take(type_of(&node.name())));
         let schema = (self.file)
             .add_schema(&name, ENCODING, text_of(&layout).as_bytes())
             .map_err(Error::writing)?;
@@ -204,7 +204,7 @@ impl<W: Write + Seek> Writer<W> {
             .map_err(Error::writing)?;
         self.nodes.push(Channel {
             id,
-            path: node.path.clone(),
+            path: node.name(),
             layout,
             sequence: 0,
         });

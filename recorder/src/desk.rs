@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 enum Order {
     /// Something has happened beside the tree.
     Line(Entry),
+    /// A program starts, and this is its file.
+    Program(Entry),
     /// The last minutes shall be saved.
     Save(SaveReason, OnSaved),
     /// Somebody who wants to hear comes.
@@ -98,6 +100,7 @@ impl Desk {
             listeners: Vec::new(),
             told: Box::new(move || Box::new(told.clone())),
             batch: Vec::new(),
+            program: None,
             values: Values::default(),
             is_heard: is_heard.clone(),
         };
@@ -144,6 +147,17 @@ impl Desk {
         self.give(Order::Line(Entry::Line(story, now_ns(), Arc::new(line))));
     }
 
+    /// A program starts: its file goes with every recording, in place of that of the program before.
+    pub fn program(&self, name: &str, media_type: &'static str, bytes: &[u8]) {
+        let name = name.into();
+        self.give(Order::Program(Entry::Attachment(
+            now_ns(),
+            name,
+            media_type,
+            bytes.into(),
+        )));
+    }
+
     /// Saves the last minutes; `told` hears the file, or why there is none.
     pub fn save(&self, why: SaveReason, told: OnSaved) {
         self.give(Order::Save(why, told));
@@ -161,7 +175,7 @@ impl Desk {
             Err(TrySendError::Full(order) | TrySendError::Disconnected(order)) => match order {
                 Order::Save(_, told) => told(Err(Error::TooMany("orders at once"))),
                 // Dropping a listener ends its connection.
-                Order::Line(_) | Order::Listen(_) => {}
+                Order::Line(_) | Order::Program(_) | Order::Listen(_) => {}
             },
         }
     }
@@ -181,6 +195,8 @@ struct Work {
     listeners: Vec<Box<dyn Listener>>,
     told: Box<dyn Fn() -> OnSaved + Send>,
     batch: Vec<Entry>,
+    /// The file of the program that was started last.
+    program: Option<Entry>,
     values: Values,
     is_heard: Arc<AtomicBool>,
 }
@@ -215,6 +231,10 @@ impl Work {
     fn obey(&mut self, order: Order) {
         match order {
             Order::Line(line) => self.batch.push(line),
+            Order::Program(file) => {
+                self.batch.push(file.clone());
+                self.program = Some(file);
+            }
             Order::Save(why, told) => self.save(why, told),
             Order::Listen(listener) => self.welcome(listener),
         }
@@ -247,8 +267,11 @@ impl Work {
         self.is_heard.store(true, Ordering::Relaxed);
         self.want();
         self.ensure();
-        let beginning = self.watch.as_ref().map(Watch::beginning);
-        if let (Some(listener), Some(beginning)) = (self.listeners.last_mut(), beginning) {
+        let mut beginning: Vec<Entry> = self.program.iter().cloned().collect();
+        beginning.extend(self.watch.iter().flat_map(Watch::beginning));
+        if let Some(listener) = self.listeners.last_mut()
+            && !beginning.is_empty()
+        {
             listener.put(&beginning, now_ns());
         }
     }
@@ -322,9 +345,10 @@ impl Work {
             return;
         }
         if let Some(kept) = &mut self.kept {
-            let watch = &self.watch;
+            let (watch, program) = (&self.watch, &self.program);
             kept.put(&batch, || {
-                watch.as_ref().map(Watch::beginning).unwrap_or_default()
+                let beginning = watch.iter().flat_map(Watch::beginning);
+                beginning.chain(program.clone()).collect()
             });
             if self.values.have_gone(&batch) && kept.is_due(SaveReason::Fault) {
                 kept.save(SaveReason::Fault, (self.told)());

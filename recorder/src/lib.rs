@@ -5,6 +5,7 @@
 //!
 //! - `entry`: something for a recording
 //! - `nodes`, `watch`: what a tree has, and what happens in it
+//! - `raw`: what sources give, before it is converted
 //! - `world`: what a virtual robot tells of the world around it
 //! - `pen`: entries as messages of one recording
 //! - `standard`: nodes as messages that other people's tools know
@@ -30,6 +31,7 @@ pub mod live;
 pub mod nodes;
 pub mod pattern;
 mod pen;
+mod raw;
 mod standard;
 pub mod stream;
 pub mod watch;

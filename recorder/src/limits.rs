@@ -64,3 +64,5 @@ pub const WORLD_SCENE_BYTES_MAX: u64 = 256 << 10;
 pub const WORLD_PLACES_BYTES_MAX: u64 = 8 << 10;
 /// Bytes of such lines in a second.
 pub const WORLD_BYTES_PER_S: u64 = 20 << 10;
+/// Bytes of a tuple of a source that is recorded as it was: no pictures.
+pub const RAW_BYTES_MAX: usize = 64 << 10;

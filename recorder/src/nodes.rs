@@ -52,6 +52,7 @@ fn node(root: &Path, directory: &Path) -> Option<Node> {
         is_written: file.permissions().mode() & 0o200 != 0,
         rest: attribute(&value, "user.trik.rest").unwrap_or_default(),
         aliases: Vec::new(),
+        is_raw: false,
         path,
         format,
     })

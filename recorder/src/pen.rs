@@ -40,7 +40,9 @@ impl<W: Write + Seek> Pen<W> {
         }
         let id = self.file.add(&known.node)?;
         self.ids.insert(known.number, id);
-        if let Some(standard) = &mut self.standard {
+        if let Some(standard) = &mut self.standard
+            && !known.node.is_raw
+        {
             standard.meet(known);
         }
         Ok(id)
@@ -57,13 +59,17 @@ impl<W: Write + Seek> Pen<W> {
                 let id = self.id(known)?;
                 self.file.sample(id, *unix_ns, tuple)?;
                 match &mut self.standard {
-                    Some(standard) => standard.sample(&mut self.file, known, *unix_ns, tuple),
-                    None => Ok(()),
+                    Some(standard) if !known.node.is_raw => {
+                        standard.sample(&mut self.file, known, *unix_ns, tuple)
+                    }
+                    Some(_) | None => Ok(()),
                 }
             }
             Entry::Fault(known, unix_ns, errno, reason) => {
                 let id = self.id(known)?;
-                if let Some(standard) = &mut self.standard {
+                if let Some(standard) = &mut self.standard
+                    && !known.node.is_raw
+                {
                     standard.fault(known);
                 }
                 self.file.fault(id, *unix_ns, *errno, reason)

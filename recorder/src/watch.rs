@@ -6,6 +6,7 @@
 use crate::clock::{clock_ns, now_ns, offset_ns};
 use crate::entry::{Entry, Known};
 use crate::error::Error;
+use crate::raw::Raws;
 use crate::world::World;
 use crate::{limits, nodes};
 use journal::layout::Layout;
@@ -23,9 +24,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// One node that is looked at.
-struct Watched {
-    known: Arc<Known>,
-    ring: Reader,
+pub(crate) struct Watched {
+    pub(crate) known: Arc<Known>,
+    pub(crate) ring: Reader,
     wish: Wish,
     /// The last errno, and what `fault` said of it.
     fault: (i32, Arc<str>),
@@ -59,7 +60,7 @@ fn is_sampled_by_the_clock(root: &Path, node: &str) -> bool {
 }
 
 impl Watched {
-    fn new(number: u32, mut node: Node, ring: Reader, wish: Wish) -> Self {
+    pub(crate) fn new(number: u32, mut node: Node, ring: Reader, wish: Wish) -> Self {
         let size = Layout::parse(&node.format).map_or(0, |layout| layout.size());
         if size != ring.tuple_bytes() {
             // What is written has no names if it is converted on its way.
@@ -91,7 +92,12 @@ impl Watched {
     }
 
     /// Takes what has come; gives how much was overwritten before. What a node had when the looking began comes first.
-    fn look(&mut self, from: &From<'_>, tuple: &mut Vec<u8>, out: &mut Vec<Entry>) -> u64 {
+    pub(crate) fn look(
+        &mut self,
+        from: &From<'_>,
+        tuple: &mut Vec<u8>,
+        out: &mut Vec<Entry>,
+    ) -> u64 {
         let begin = out.len();
         let mut missed = 0;
         let mut before = None;
@@ -121,7 +127,7 @@ impl Watched {
 }
 
 /// What times of samples are counted from.
-struct From<'a> {
+pub(crate) struct From<'a> {
     root: &'a Path,
     begin_ns: u64,
     offset_ns: i64,
@@ -146,6 +152,8 @@ pub struct Watch {
     /// What says of itself that it records.
     program: String,
     watched: Vec<Watched>,
+    /// What their sources give, before it is converted; None if nobody wants it.
+    raws: Option<Raws>,
     /// Nodes that nothing samples in the background.
     left_out: BTreeSet<String>,
     log: Option<File>,
@@ -201,6 +209,7 @@ impl Watch {
             wants,
             program: program.to_owned(),
             watched: Vec::new(),
+            raws: None,
             left_out: BTreeSet::new(),
             log: log(root),
             line: Vec::new(),
@@ -230,6 +239,29 @@ impl Watch {
         Self {
             world: folder.map(World::new),
             ..self
+        }
+    }
+
+    /// The same with what sources give before it is converted, as far as the tree publishes that.
+    #[must_use]
+    pub fn with_raw(self, is_wanted: bool) -> Self {
+        let mut watch = Self {
+            raws: is_wanted.then(Raws::default),
+            ..self
+        };
+        watch.find_raws(&mut Vec::new());
+        watch
+    }
+
+    /// Of how many nodes that is looked at.
+    pub fn raws(&self) -> usize {
+        self.raws.as_ref().map_or(0, Raws::count)
+    }
+
+    fn find_raws(&mut self, out: &mut Vec<Entry>) {
+        if let Some(raws) = &mut self.raws {
+            let nodes = self.watched.iter().map(|one| &one.known.node);
+            raws.find(&self.root, nodes, &mut self.numbers, out);
         }
     }
 
@@ -274,8 +306,15 @@ impl Watch {
             begin_ns: self.begin_ns,
             offset_ns: self.offset_ns,
         };
+        // Samples first: what they were made of is then there.
+        let samples = out.len();
         for watched in &mut self.watched {
             self.missed += watched.look(&from, &mut self.tuple, out);
+        }
+        if let Some(raws) = &mut self.raws {
+            let made = out.split_off(samples);
+            self.missed += raws.look(&from, &mut self.tuple, out);
+            out.extend(made);
         }
         self.read_log(out);
         if let Some(world) = &mut self.world {
@@ -286,7 +325,8 @@ impl Watch {
     /// What a recording that begins now must have first: facts, configuration, all nodes, and what each had last.
     pub fn beginning(&self) -> Vec<Entry> {
         let facts = Entry::Facts(ABOUT, Arc::new(self.facts()));
-        let nodes = self.watched.iter();
+        let raws = self.raws.iter().flat_map(Raws::all);
+        let nodes = self.watched.iter().chain(raws);
         let nodes = nodes.map(|watched| Entry::Node(watched.known.clone()));
         let newest = self.watched.iter().filter_map(|one| one.newest.clone());
         let first = [facts].into_iter().chain(self.text.clone());
@@ -390,6 +430,7 @@ impl Watch {
             }
             *watched = fresh;
         }
+        self.find_raws(out);
     }
 
     fn facts(&self) -> BTreeMap<String, String> {

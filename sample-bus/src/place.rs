@@ -52,6 +52,14 @@ pub fn written_file_name(node: &str) -> io::Result<String> {
     fitting(file_name(node)? + "%w")
 }
 
+/// The file of what a node's source gave before it was converted: `sensors/A1` is `sensors+A1%r`.
+///
+/// # Errors
+/// As of [`file_name`].
+pub fn raw_file_name(node: &str) -> io::Result<String> {
+    fitting(file_name(node)? + "%r")
+}
+
 fn fitting(name: String) -> io::Result<String> {
     if name.len() > limits::NAME_BYTES_MAX {
         return Err(io::Error::new(

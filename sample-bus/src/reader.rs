@@ -104,6 +104,17 @@ impl Reader {
         Self::open_file(&file)
     }
 
+    /// Opens the ring of what the source of a node gave, before it was converted, with the failures of the source. It says
+    /// nothing of a need for samples: open the node's own ring too.
+    ///
+    /// # Errors
+    /// As of [`Reader::open`]; `NotFound` for a node that does not publish it.
+    pub fn open_raw(mountpoint: &Path, node: &str) -> io::Result<Self> {
+        let mountpoint = mountpoint.canonicalize()?;
+        let file = directory_of(&mountpoint)?.join(place::raw_file_name(node)?);
+        Self::open_file(&file)
+    }
+
     /// Opens a ring by the path of its file. The file's owner must be trusted not to shorten it. Nothing tells the daemon that
     /// somebody needs the samples.
     ///

@@ -75,6 +75,21 @@ impl Panel {
 
     /// A line through points; angles are not drawn across where they wrap, nor anything across what is no number.
     pub fn line(&self, svg: &mut Svg, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
+        self.line_of("l", svg, points, is_circle);
+    }
+
+    /// The same for a line beside another one, with which it is compared.
+    pub fn line_before(&self, svg: &mut Svg, points: impl Iterator<Item = (f64, f64)>) {
+        self.line_of("b", svg, points, false);
+    }
+
+    fn line_of(
+        &self,
+        class: &str,
+        svg: &mut Svg,
+        points: impl Iterator<Item = (f64, f64)>,
+        is_circle: bool,
+    ) {
         let mut last: Option<f64> = None;
         let steps = points.filter_map(|(x, y)| {
             if !(x.is_finite() && y.is_finite()) {
@@ -87,7 +102,7 @@ impl Panel {
             last = Some(y);
             Some((sign, self.point(x, y)))
         });
-        svg.tag("path").with("class", "l").path(2, steps).close();
+        svg.tag("path").with("class", class).path(2, steps).close();
     }
 }
 

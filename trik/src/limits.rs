@@ -278,3 +278,18 @@ pub const BOX_MIB: u16 = 32;
 pub(crate) const TOLD_MS: u64 = 100;
 /// The same while nothing moves in it.
 pub(crate) const TOLD_AGAIN_MS: u64 = 1_000;
+/// Letters of a tuple in a line about a difference.
+pub(crate) const DIFF_SHOWN_CHARS: usize = 60;
+/// Panels of one node in a picture of differences: not each ray of a lidar.
+pub(crate) const DIFF_PANELS_MAX: usize = 8;
+/// Names of files that are told if another one was meant.
+pub(crate) const FILES_TOLD: usize = 20;
+/// Lines of programs that wait for a bridge.
+pub(crate) const STORIES: usize = 1_024;
+/// When a robot is asked again that did not tell of its programs.
+pub(crate) const STORIES_AGAIN_MS: u64 = 2_000;
+/// Cells of a table in Parquet that are in memory, and rows.
+#[cfg(feature = "parquet")]
+pub(crate) const TABLE_CELLS: usize = 4 << 20;
+#[cfg(feature = "parquet")]
+pub(crate) const TABLE_ROWS: usize = 65_536;

@@ -36,6 +36,10 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     output.refuse_no_file()?;
     output.refuse_present()?;
     let named = match &args.robot {
+        Some(Recorded::Network(_)) if args.raw => {
+            let why = "--raw is for a mounted tree: run trik record on the robot's own computer";
+            return Err(Refusal::new(why));
+        }
         Some(Recorded::Network(robot)) => return recorded::record(args, robot),
         Some(Recorded::Tree(_)) if args.hz.is_some() => {
             let why =
@@ -47,10 +51,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     };
     let root = tree(named.map(PathBuf::as_path))?;
     let signals = signals().map_err(|error| Error::system("signals", error))?;
-    let wanted = args.clone();
-    let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));
-    let watch = Watch::begin(&root, LIBRARY, wants).map_err(refused)?;
-    let watch = watch.with_world(world(&root).as_deref());
+    let watch = watched(args, &root)?;
     let create = match args.no_standard {
         false => Disk::create_with_standard,
         true => Disk::create,
@@ -98,6 +99,20 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let line = counted(counts, begin.elapsed(), size);
     say(&format!("{}: {why}; {line}\n", args.output.display()))?;
     Ok(0)
+}
+
+/// The tree, as it is to be looked at.
+fn watched(args: &RecordArgs, root: &Path) -> Result<Watch, Error> {
+    let wanted = args.clone();
+    let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));
+    let watch = Watch::begin(root, LIBRARY, wants).map_err(refused)?;
+    let watch = watch.with_world(world(root).as_deref()).with_raw(args.raw);
+    if args.raw && watch.raws() == 0 {
+        let why = "no node gives what it has before it is converted: give nodes raw = true in the configuration, or start the \
+                   tree with trik up --raw or trikfs mount --raw";
+        return Err(Error::file(root, why));
+    }
+    Ok(watch)
 }
 
 /// Where the world around the virtual robot of this tree is told; None if it is none of this user.
@@ -191,8 +206,12 @@ fn say(text: &str) -> Result<(), Refusal> {
 fn begun(watch: &Watch, args: &RecordArgs) -> String {
     let recorded = watch.recorded();
     let left_out: Vec<&str> = watch.left_out().collect();
+    let raw = match watch.raws() {
+        0 => String::new(),
+        count => format!(", and the bytes of {count} before they are converted,"),
+    };
     let mut text = format!(
-        "recording {recorded} nodes of {} into {}; Ctrl-C ends it\n",
+        "recording {recorded} nodes{raw} of {} into {}; Ctrl-C ends it\n",
         watch.root().display(),
         args.output.display()
     );

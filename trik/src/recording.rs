@@ -10,7 +10,8 @@ pub(crate) mod plot;
 pub(crate) mod shared;
 
 use crate::error::Error;
-use crate::output::standard;
+use crate::limits;
+use crate::output::{Output, standard};
 use crate::refusal::Refusal;
 use crate::terminal::harmless;
 use clap::Args;
@@ -18,6 +19,7 @@ use fresh::Fresh;
 use journal::mend::mend;
 use journal::read::Reader;
 use journal::write::ABOUT;
+use lang_text::problem::Locale;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -28,6 +30,16 @@ use std::path::{Path, PathBuf};
 pub(crate) struct InfoArgs {
     /// The recording.
     pub file: PathBuf,
+    /// Give one of the files that go with it instead: config.lua, world.json, programs/NAME; of several with this name the
+    /// last.
+    #[arg(long, value_name = "NAME")]
+    pub attachment: Option<String>,
+    /// Where that file goes, a new one [default: standard output].
+    #[arg(long, short, value_name = "FILE", requires = "attachment")]
+    pub output: Option<PathBuf>,
+    /// Overwrite it if it exists.
+    #[arg(long, requires = "output")]
+    pub force: bool,
 }
 
 /// The options of `trik mend`.
@@ -48,8 +60,41 @@ pub(crate) struct MendArgs {
 /// # Errors
 /// It is none, or it is cut.
 pub(crate) fn info(args: &InfoArgs) -> Result<u8, Refusal> {
-    standard(summary(&args.file)?.as_bytes())?;
+    match &args.attachment {
+        Some(name) => fetch(args, name)?,
+        None => standard(summary(&args.file)?.as_bytes())?,
+    }
     Ok(0)
+}
+
+/// Gives a file that goes with a recording. Its name there only finds it: where it goes is what the person says.
+fn fetch(args: &InfoArgs, name: &str) -> Result<(), Refusal> {
+    let output = Output {
+        path: args.output.as_deref(),
+        force: args.force,
+        source: &args.file,
+        locale: Locale::English,
+    };
+    output.refuse_present()?;
+    let fail = |why| Error::file(&args.file, why);
+    let mut reader = Reader::open(open(&args.file)?).map_err(fail)?;
+    let mut names: Vec<String> = Vec::new();
+    for (known, _) in reader.attachments() {
+        if known == name {
+            let bytes = reader.attachment(name).map_err(fail)?;
+            return output.write(&bytes);
+        }
+        let known = harmless(&known);
+        if names.len() < limits::FILES_TOLD && !names.contains(&known) {
+            names.push(known);
+        }
+    }
+    let name = harmless(name);
+    let why = match &names[..] {
+        [] => format!("no file {name} goes with it, and no other one"),
+        some => format!("no file {name} goes with it; there are {}", some.join(", ")),
+    };
+    Err(Error::file(&args.file, why).into())
 }
 
 fn summary(path: &Path) -> Result<String, Error> {

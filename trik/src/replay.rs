@@ -3,6 +3,7 @@
 //! Owns the order of place, player and tree, and what the player is for the session over it. `file` is the recording,
 //! `player` has the clock, `tree` is the configuration, `outputs` compares what programs write, `order` are the words.
 
+mod anew;
 pub(crate) mod args;
 mod clock;
 mod file;
@@ -15,7 +16,9 @@ mod tree;
 mod words;
 
 use crate::error::Error;
+use crate::output::{Output, standard};
 use crate::place::{self, Place};
+use crate::recording::shared::has_ending;
 use crate::refusal::Refusal;
 use crate::up::args::absolute;
 use crate::up::page::{self, Served};
@@ -23,8 +26,10 @@ use crate::up::session::{Beneath, Over, Session, signals};
 use crate::up::trikd::Trikd;
 use ::page::playback::{Playback, State};
 use ::page::world::Refused;
+use anew::{compare, tape};
 use args::ReplayArgs;
 use file::FileRecording;
+use lang_text::problem::Locale;
 use order::Order;
 use player::{Begin, CONTROL, Player, SOCKET};
 use recording::Recording;
@@ -32,25 +37,94 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
 
+/// The name of what another configuration makes of a recording.
+const ANEW: &str = "anew.mcap";
+
 /// Replays until somebody stops it.
 ///
 /// # Errors
 /// The file is no recording, the tree does not start, or with `--exit` programs did not do what was recorded.
 pub(crate) fn run(args: &ReplayArgs) -> Result<u8, Refusal> {
-    Ok(u8::from(!replay(args)?))
+    let is_same = match (&args.config, args.diff) {
+        (Some(config), true) => differ(args, config)?,
+        (_, _) => replay(args)?,
+    };
+    Ok(u8::from(!is_same))
+}
+
+/// Tells where another configuration makes something else of what devices gave; true if it does not.
+fn differ(args: &ReplayArgs, config: &Path) -> Result<bool, Refusal> {
+    let output = args.output.as_deref().map(|path| Output {
+        path: Some(path),
+        force: args.force,
+        source: &args.file,
+        locale: Locale::English,
+    });
+    if let Some(output) = &output {
+        if !output.is_standard()
+            && !args
+                .output
+                .as_deref()
+                .is_some_and(|path| has_ending(path, "svg"))
+        {
+            return Err(Refusal::new("the picture is SVG: its name ends with .svg"));
+        }
+        output.refuse_present()?;
+        output.spare(&[config])?;
+    }
+    let report = compare::compare(&compare::Wishes {
+        of: anew::Of {
+            file: &args.file,
+            config,
+            include: &args.include,
+            only: &args.only,
+        },
+        from: u64::try_from(args.start.unwrap_or_default().as_nanos()).unwrap_or(u64::MAX),
+        is_drawn: output.is_some(),
+    })?;
+    match output.zip(report.picture) {
+        // The picture alone, for the next program.
+        Some((output, picture)) if output.is_standard() => output.write(picture.as_bytes())?,
+        Some((output, picture)) => {
+            output.write(picture.as_bytes())?;
+            standard(report.text.as_bytes())?;
+        }
+        None => standard(report.text.as_bytes())?,
+    }
+    Ok(report.is_same)
+}
+
+/// What is played: the recording, or what another configuration makes of it, which is in this folder until it is open.
+fn played(args: &ReplayArgs, folder: &Path) -> Result<FileRecording, Error> {
+    let Some(config) = &args.config else {
+        return FileRecording::open(&args.file);
+    };
+    let mut run = anew::Run::open(&anew::Of {
+        file: &args.file,
+        config,
+        include: &args.include,
+        only: &[],
+    })?;
+    let made = folder.join(ANEW);
+    let _ = std::fs::remove_file(&made);
+    let opened = tape::write(&mut run, &made).and_then(|()| FileRecording::open(&made));
+    // An open file stays.
+    let _ = std::fs::remove_file(&made);
+    opened
 }
 
 /// True if nothing differs from the recording.
 fn replay(args: &ReplayArgs) -> Result<bool, Error> {
-    let recording = FileRecording::open(&args.file)?;
+    // Before anything is mounted it is known whether the file can be played.
+    let length = FileRecording::open(&args.file)?.length();
     let begin = Begin {
         at: args.start.unwrap_or_default(),
         speed: args.speed,
         is_paused: args.paused,
         is_loop: args.is_loop,
     };
-    if begin.at > recording.length() {
-        let why = format!("the recording has {} only", words::time(recording.length()));
+    if begin.at > length {
+        let why = format!("the recording has {} only", words::time(length));
         return Err(Error::file(&args.file, why));
     }
     // Before the player has a thread, so that these come to the main thread alone.
@@ -63,6 +137,7 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
     };
     std::fs::create_dir_all(&place.board).map_err(|why| Error::file(&place.board, why))?;
     let _board = Board(&place.board);
+    let recording = played(args, &place.board)?;
     let text = tree::configuration(recording.channels(), &place.board.join(SOCKET));
     std::fs::write(&place.world, text).map_err(|why| Error::file(&place.world, why))?;
     let hints = hints(recording.channels());

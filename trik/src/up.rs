@@ -266,6 +266,7 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
         option("--group", Path::new(group));
         list.push("--allow-other".into());
     }
+    list.extend(args.raw.then(|| "--raw".into()));
     list.push("--".into());
     list.push(place.mountpoint.clone().into());
     list

@@ -286,3 +286,5 @@ pub const ANSWER_S_MAX: u64 = 86_400;
 pub const QUESTION_CHARACTERS: usize = 1000;
 /// Milliseconds between a question without an answer and the next one.
 pub const QUESTION_REST_MS: u64 = 10_000;
+/// Bytes of the file of a program that goes with recordings.
+pub const RECORDED_PROGRAM_BYTES: u64 = 256 << 10;

@@ -288,6 +288,9 @@ impl Supervisor {
                 child.send(ToProgram::Mail { hull, text: &text });
             }
         }
+        if let Some(path) = &path {
+            around.record.program(path, language);
+        }
         let is_quiet = path.is_none();
         self.last = language;
         let mut shown = around.programs.shown.borrow_mut();

@@ -4,7 +4,9 @@
 //! client hears is known to `server/telemetry`.
 
 use crate::error::Error;
+use crate::limits;
 use crate::log;
+use crate::program::child::Language;
 use crate::settings::Settings;
 use journal::standard::Level;
 use journal::write::Story;
@@ -12,7 +14,9 @@ use recorder::desk::{Desk, Listener};
 use recorder::kept::{self, SaveReason};
 use std::cell::Cell;
 use std::fmt;
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
@@ -76,6 +80,25 @@ impl Record {
         }
     }
 
+    /// A program in this file starts. One that is too large for a recording is left out, and so is one that cannot be read,
+    /// of which its start says more.
+    pub fn program(&self, path: &Path, language: Language) {
+        let (Some(name), Ok(file)) = (path.file_name(), File::open(path)) else {
+            return;
+        };
+        if !file.metadata().is_ok_and(|file| file.is_file()) {
+            return;
+        }
+        let mut bytes = Vec::new();
+        let most = limits::RECORDED_PROGRAM_BYTES;
+        let read = file.take(most + 1).read_to_end(&mut bytes);
+        if read.is_err() || bytes.len() as u64 > most {
+            return;
+        }
+        let name = format!("programs/{}", name.to_string_lossy());
+        self.desk.program(&name, media_type(language), &bytes);
+    }
+
     /// Something has happened after which somebody may want to know what was before. Without a black box it is nothing.
     pub fn freeze(&self, why: SaveReason) {
         if self.desk.keeps() {
@@ -110,6 +133,16 @@ impl Record {
     /// Whether somebody has begun to hear since this was asked last.
     pub fn take_newcomer(&self) -> bool {
         self.has_newcomer.take()
+    }
+}
+
+/// What kind of file a program is.
+fn media_type(language: Language) -> &'static str {
+    match language {
+        Language::JavaScript => "text/javascript",
+        Language::Python => "text/x-python",
+        Language::Lua => "text/x-lua",
+        Language::Diagram | Language::Native => "application/octet-stream",
     }
 }
 

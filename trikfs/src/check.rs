@@ -42,12 +42,22 @@ pub(crate) fn load(file: &Path, paths: &SearchPaths) -> Result<Loaded, Problem> 
     let name = file.display().to_string();
     let bytes =
         read_config(file).map_err(|error| Problem::new(name.clone(), 0, error.to_string()))?;
+    load_text(&name, file.parent(), &bytes, paths)
+}
+
+/// Loads the text of a configuration; `base` is the folder of its file.
+pub(crate) fn load_text(
+    name: &str,
+    base: Option<&Path>,
+    text: &[u8],
+    paths: &SearchPaths,
+) -> Result<Loaded, Problem> {
     let loader = Loader {
         include_dirs: paths.include_dirs.clone(),
         library_dirs: paths.library_dirs.clone(),
         device_root: paths.device_root.clone(),
     };
-    loader.load(&name, file.parent(), &bytes)
+    loader.load(name, base, text)
 }
 
 /// Makes all the checks that bringing the file into force would make. Returns the warnings.

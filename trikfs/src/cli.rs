@@ -13,6 +13,7 @@ mod paths;
 mod run;
 
 pub use paths::find_shipped;
+pub(crate) use paths::search_paths;
 
 use crate::check::SearchPaths;
 use crate::convert::isolated;
@@ -133,6 +134,10 @@ struct TreeArgs {
     /// Do not put samples into shared memory.
     #[arg(long, hide = !cfg!(feature = "sample-bus"))]
     no_sample_bus: bool,
+    /// Put what devices give into shared memory too, as it is before converters: for trik record --raw. A node with raw = true
+    /// does so without this option.
+    #[arg(long, hide = !cfg!(feature = "sample-bus"), conflicts_with = "no_sample_bus")]
+    raw: bool,
 }
 
 /// A transport as it is called here.
@@ -379,6 +384,7 @@ impl TreeArgs {
             option("--transport", Path::new(name.get_name()));
         }
         arguments.extend(self.no_sample_bus.then(|| "--no-sample-bus".into()));
+        arguments.extend(self.raw.then(|| "--raw".into()));
         arguments
     }
 }

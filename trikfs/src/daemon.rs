@@ -72,6 +72,8 @@ pub struct Options {
     pub transport: Transport,
     /// Who may read the samples in shared memory; None: there are none.
     pub sample_bus: Option<Readers>,
+    /// They have what devices give before it is converted, of every node.
+    pub raw: bool,
     /// What the guardian must know.
     pub ledger: Option<Ledger>,
     /// Called when the first configuration is in force, with its number of nodes.
@@ -135,6 +137,7 @@ pub fn run(options: Options) -> Result<(), Failure> {
         .log
         .line(&format!("mounted on {}", options.mountpoint.display()));
 
+    engine.samples.set_raw(options.raw);
     engine.open_sample_bus(&options.mountpoint, options.sample_bus);
     let loaded = first_configuration(options.config.as_deref(), options.in_force);
     let applied = loaded.and_then(|(name, bytes)| {

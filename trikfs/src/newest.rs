@@ -26,6 +26,7 @@ use crate::node::{Feed, Node};
 use crate::reader::Reader;
 use crate::state_reader::StateReader;
 use crate::transport::RequestId;
+use bus::Tap;
 use config::description::Pace;
 use config::format::FieldKind;
 use need::Need;
@@ -54,6 +55,8 @@ pub struct Newest {
     /// The sample out of turn that no writer waits for any longer; that of a later write is in its place.
     renewal: Mutex<Option<Arc<dyn Due>>>,
     page: Page,
+    /// What the source gave, for those who want it as it was.
+    tap: Tap,
 }
 
 #[derive(Default)]
@@ -109,6 +112,7 @@ impl Newest {
             jobs: Mutex::default(),
             renewal: Mutex::default(),
             page: Page::default(),
+            tap: Tap::default(),
         }
     }
 
@@ -451,6 +455,7 @@ impl Newest {
     }
 
     fn fail(&self, error: Error, thread: Thread) {
+        self.tap.fail(&error);
         let is_new = self.latch.fail(&error);
         if let Some(node) = self.node.upgrade() {
             match thread {
@@ -528,8 +533,11 @@ impl Work {
                         "the source is a state and has no events; use poll_ms".to_owned(),
                     ));
                 }
-                Feed::State(state) => Source::State(state),
-                Feed::Stream(reader) => Source::Stream(reader),
+                Feed::State(state) => Source::State(state.tapped()),
+                Feed::Stream(reader) => {
+                    reader.tap();
+                    Source::Stream(reader)
+                }
             };
         }
         Ok(())

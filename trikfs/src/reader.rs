@@ -12,6 +12,7 @@ use crate::hub::Subscription;
 use crate::limits;
 use crate::node::Node;
 use converter::Direction;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
@@ -22,6 +23,8 @@ pub struct Reader {
     on_ready: Weak<dyn Ready>,
     pipeline: Arc<Mutex<Pipeline>>,
     inner: Mutex<Inner>,
+    /// It takes the samples of the node, and tells of what they were made.
+    is_tapped: AtomicBool,
 }
 
 /// Where the raw tuples come from.
@@ -82,7 +85,13 @@ impl Reader {
             on_ready,
             pipeline,
             inner: Mutex::new(inner),
+            is_tapped: AtomicBool::new(false),
         })
+    }
+
+    /// From now on this is the one that takes the samples of the node.
+    pub fn tap(&self) {
+        self.is_tapped.store(true, Ordering::Relaxed);
     }
 
     /// True if the source is one opening that all readers share, so that what arrived is queued here.
@@ -319,6 +328,11 @@ impl Reader {
             made += inner.take_rest(&mut out[made..]);
         }
         drop(pipeline);
+        if self.is_tapped.load(Ordering::Relaxed) {
+            let heard = &inner.raw[..consumed * input_size];
+            let is_refused = fault.is_some();
+            (self.node.sampling.newest).heard(heard, input_size, is_refused);
+        }
         inner
             .raw
             .copy_within(consumed * input_size..inner.raw_len, 0);

@@ -23,6 +23,8 @@ pub struct StateReader {
     /// The offset after the last read, and the tuple of the source that comes next there.
     next_at: u64,
     next_tuple: u64,
+    /// It takes the samples of the node, and tells of what they were made.
+    is_tapped: bool,
 }
 
 impl StateReader {
@@ -40,6 +42,16 @@ impl StateReader {
             rest: Vec::new(),
             next_at: 0,
             next_tuple: 0,
+            is_tapped: false,
+        }
+    }
+
+    /// The one that takes the samples of the node.
+    #[must_use]
+    pub fn tapped(self) -> Self {
+        Self {
+            is_tapped: true,
+            ..self
         }
     }
 
@@ -63,6 +75,9 @@ impl StateReader {
             let batch = self
                 .node
                 .convert(&mut pipeline, Direction::Read, &self.raw, tuple);
+            if self.is_tapped {
+                (self.node.sampling.newest).heard(&self.raw, self.raw.len(), batch.fault.is_some());
+            }
             if let Some(error) = batch.fault {
                 return Err(error);
             }

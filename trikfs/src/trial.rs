@@ -3,6 +3,7 @@
 //! Owns the converter that is tried: loaded and opened as the live node would. `stream` runs bytes through it, and the
 //! judging by vectors and by random bytes is that of the crate `converter`, the same for every language.
 
+pub mod bench;
 pub mod faults;
 pub mod stream;
 pub mod timing;

@@ -16,7 +16,7 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 28] = [
+pub(super) const FIELDS: [&str; 29] = [
     "about",
     "ages",
     "always",
@@ -37,6 +37,7 @@ pub(super) const FIELDS: [&str; 28] = [
     "owner",
     "params",
     "poll_ms",
+    "raw",
     "read_back",
     "rest",
     "share",
@@ -120,12 +121,12 @@ impl NodeFields<'_, '_> {
             attributes: Vec::new(),
             share: self.boolean("share")?,
             isolate: self.boolean("isolate")?.unwrap_or(false),
+            raw: self.boolean("raw")?.unwrap_or(false),
             fingerprint: 0,
         };
         self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
-        self.check_read_back(&node, read_only)?;
-        self.check_isolate(&node)?;
+        self.check_flags(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
     }
@@ -355,6 +356,22 @@ impl NodeFields<'_, '_> {
         Ok(())
     }
 
+    /// Those that say yes or no fit the rest.
+    fn check_flags(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
+        self.check_read_back(node, read_only)?;
+        self.check_isolate(node)?;
+        self.check_raw(node)
+    }
+
+    /// There is somebody who takes samples in the background and publishes them.
+    fn check_raw(&self, node: &NodeDescription) -> Result<(), Problem> {
+        if node.raw && node.pace == Pace::OnRead {
+            let reason = "raw needs samples in the background: give the node poll_ms or on_event";
+            return Err(self.problem("raw", reason));
+        }
+        Ok(())
+    }
+
     /// The rest value can be written: the source takes writes, and the numbers fit the tuple that a program writes.
     fn check_rest(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
         let Some(rest) = &node.rest else {
@@ -408,6 +425,7 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         node.share,
         node.read_back,
         node.isolate,
+        node.raw,
     );
     let limits = (
         node.timeout_ms,

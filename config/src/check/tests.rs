@@ -163,6 +163,13 @@ fn sizes_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn bytes_of_a_source_need_samples_in_the_background() {
+    let reason = "raw needs samples in the background: give the node poll_ms or on_event";
+    let why = refused("src = '/dev/null', input_tuple_size = 1, raw = true");
+    assert!(why.ends_with(reason), "{why}");
+}
+
+#[test]
 fn only_machine_code_is_isolated() {
     let field = |text: &str| {
         refused(&format!(

@@ -58,6 +58,41 @@ fn all(reader: &mut Reader<Cursor<&[u8]>>) -> Vec<Event> {
 }
 
 #[test]
+fn what_sources_gave_is_read_apart_from_what_nodes_had() {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    let node = out.add(&Node::sensor("a/n", "i32 x")).unwrap();
+    let raw = out.add(&Node::raw("a/n", 2)).unwrap();
+    out.sample(raw, ZERO, &[1, 2]).unwrap();
+    out.sample(node, ZERO + 1, &[7, 0, 0, 0]).unwrap();
+    out.fault(raw, ZERO + MS, 19, "device: gone").unwrap();
+    out.fault(node, ZERO + MS + 1, 19, "device: gone").unwrap();
+    // Its tuples have another size from here on.
+    let raw = out.add(&Node::raw("a/n", 3)).unwrap();
+    out.sample(raw, ZERO + 2 * MS, &[1, 2, 3]).unwrap();
+    assert!(out.sample(raw, ZERO, &[1]).is_err());
+    out.finish().unwrap();
+    let mut reader = open(&bytes).unwrap();
+    assert_eq!(reader.nodes().len(), 1);
+    assert_eq!(reader.raws(), ["a/n"]);
+    assert_eq!(reader.counts().0["/raw/a/n"], 2);
+    assert_eq!(
+        all(&mut reader).len(),
+        2,
+        "the sample and the failure of the node"
+    );
+    reader.seek_raw(ZERO);
+    let mut given = Vec::new();
+    while let Some(event) = reader.next_raw().unwrap() {
+        assert_eq!(event.raw, 0);
+        given.push((event.unix_ns - ZERO, event.given));
+    }
+    let gone = Err((19, "device: gone".to_owned()));
+    let wanted = [(0, Ok(vec![1, 2])), (MS, gone), (2 * MS, Ok(vec![1, 2, 3]))];
+    assert_eq!(given, wanted);
+}
+
+#[test]
 fn everything_that_was_written_is_read_in_its_order() {
     let bytes = recording(1000);
     let mut reader = open(&bytes).unwrap();

@@ -430,6 +430,50 @@ open(M + '/stop', 'w').write('1')
 }
 
 #[test]
+fn what_a_source_gives_is_in_a_ring_of_its_own_if_that_is_asked_for() {
+    let config = "trikfs = {
+  s = { src = fake{ data = '\\1\\2\\3\\4', period_ms = 20, loop = true }, input_tuple_size = 1, format = 'u8 x', on_event = true, raw = true,
+    converter = function(a_s, a, b_s, b)
+      if ba.u8(a, 0) == 3 then error('three') end
+      ba.u8(b, 0, ba.u8(a, 0) * 2)
+    end },
+  plain = { src = fake{ data = 'a' }, input_tuple_size = 1, poll_ms = 10 },
+}";
+    let Some(m) = mount(config) else { return };
+    let mut raw = Reader::open_raw(m.root(), "s").expect("a ring");
+    let mut samples = open(&m, "s");
+    let mut tuple = Vec::new();
+    let mut pairs = Vec::new();
+    eventually("four tuples", || {
+        while let Step::Event(event) = raw.next_event(&mut tuple) {
+            pairs.push((event.time_ns, event.errno, tuple.clone()));
+        }
+        pairs.len() >= 4
+    });
+    let mut after = Vec::new();
+    while let Step::Event(event) = samples.next_event(&mut tuple) {
+        after.push((event.time_ns, event.errno, tuple.clone()));
+    }
+    // What the converter refuses is no failure of the source.
+    assert!(
+        pairs
+            .iter()
+            .all(|(_, errno, raw)| *errno == 0 && raw.len() == 1),
+        "{pairs:?}"
+    );
+    for (at, errno, sample) in after {
+        let before = pairs.iter().rfind(|(raw_at, ..)| *raw_at <= at);
+        let (_, _, raw) = before.expect("bytes before the sample");
+        match errno {
+            0 => assert_eq!(sample[0], raw[0] * 2),
+            _ => assert_eq!(raw[0], 3),
+        }
+    }
+    let missing = Reader::open_raw(m.root(), "plain").err();
+    assert_eq!(missing.map(|error| error.kind()), Some(ErrorKind::NotFound));
+}
+
+#[test]
 fn a_folder_that_was_removed_is_back_with_the_next_configuration() {
     let more = "near = { alias = 'sensors/zero' },
       motor = { src = '$DIR/motor', input_tuple_size = 1, rest = { 0 } },

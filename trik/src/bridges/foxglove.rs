@@ -7,6 +7,7 @@ use super::{PROGRAM, refused, root, say};
 use crate::error::Error;
 use crate::refusal::Refusal;
 use crate::remote::bridged::Programs;
+use crate::remote::stories::Stories;
 use crate::remote::target::target;
 use crate::up::session::signals;
 use ::bridge::follow::{Change, Follow};
@@ -32,6 +33,7 @@ pub(super) fn serve(args: &FoxgloveArgs) -> Result<u8, Refusal> {
         .programs
         .clone()
         .or_else(|| target(&format!("{shown}/")).ok());
+    let stories = programs.clone().map(Stories::hear).transpose()?;
     let programs = programs.map(|at| Box::new(Programs::new(at)) as Box<dyn robot::Programs>);
     let house = House {
         name: shown.clone(),
@@ -50,6 +52,9 @@ pub(super) fn serve(args: &FoxgloveArgs) -> Result<u8, Refusal> {
     let mut entries = Vec::new();
     loop {
         entries.clear();
+        if let Some(stories) = &stories {
+            stories.take(&mut entries);
+        }
         match follow.look(&mut entries) {
             Change::Same => server.take(&entries),
             Change::Gone => {

@@ -30,6 +30,10 @@ pub(crate) struct RecordArgs {
     /// Leave out the messages of standard types, which other tools show at once: a smaller file.
     #[arg(long)]
     pub no_standard: bool,
+    /// Record what devices give before it is converted too, of nodes with raw = true or a robot of trik up --raw: then trik
+    /// replay --config tries other converters on it.
+    #[arg(long)]
+    pub raw: bool,
     /// Overwrite the recording if it exists.
     #[arg(long)]
     pub force: bool,

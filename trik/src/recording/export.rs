@@ -2,6 +2,9 @@
 //!
 //! Owns rows and columns. It is written while it is read, so that its length costs no memory.
 
+#[cfg(feature = "parquet")]
+mod parquet;
+
 use super::fresh::Fresh;
 use super::shared::{Opened, Progress, has_ending, moment, open, seconds};
 use crate::error::Error;
@@ -9,7 +12,7 @@ use crate::limits;
 use crate::output::csv;
 use crate::refusal::Refusal;
 use clap::Args;
-use journal::layout::Layout;
+use journal::layout::{Kind, Layout};
 use journal::read::{Event, EventKind};
 use recorder::pattern::matches;
 use std::collections::HashMap;
@@ -30,9 +33,12 @@ pub(crate) struct ExportArgs {
     /// Up to this moment and with it [default: to the end].
     #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub to: Option<u64>,
-    /// The table as CSV, a new file; - is standard output, as without this option.
-    #[arg(long, short, value_name = "OUT.csv")]
+    /// The table, a new file: CSV or Parquet, by its ending; - is CSV on standard output, as without this option.
+    #[arg(long, short, value_name = "OUT.csv|OUT.parquet")]
     pub output: Option<PathBuf>,
+    /// As Parquet, whatever the name of the file.
+    #[arg(long, requires = "output", conflicts_with = "csv")]
+    pub parquet: bool,
     /// As CSV, whatever the name of the file: the older spelling of its ending.
     #[arg(long, hide = true)]
     pub csv: bool,
@@ -41,9 +47,24 @@ pub(crate) struct ExportArgs {
     pub force: bool,
 }
 
+/// What the cells of a column have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cell {
+    /// Whole numbers of so many bits; true: signed ones.
+    Whole(i8, bool),
+    Single,
+    Double,
+    Text,
+    Bytes,
+}
+
 /// Which cells a sample fills.
 struct Columns {
     names: Vec<String>,
+    #[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "CSV has texts"))]
+    cells: Vec<Cell>,
+    #[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "CSV has none"))]
+    units: Vec<String>,
     /// Of each layout of a node that is wanted: the columns of its numbers.
     of_layout: HashMap<usize, Vec<usize>>,
     /// The nodes that are wanted.
@@ -56,9 +77,19 @@ struct Columns {
 /// It is no whole recording, has no such nodes or too many numbers, or the table cannot be written.
 pub(crate) fn run(args: &ExportArgs) -> Result<u8, Refusal> {
     let place = (args.output.as_deref()).filter(|path| *path != Path::new("-"));
-    if place.is_some_and(|place| !args.csv && !has_ending(place, "csv")) {
-        let why = "the table is CSV: its name ends with .csv";
+    let ends = |with: &str| place.is_some_and(|place| has_ending(place, with));
+    let is_parquet = args.parquet || (!args.csv && ends("parquet"));
+    if place.is_some() && !(is_parquet || args.csv || ends("csv")) {
+        let why = "the table is CSV or Parquet: its name ends with .csv or .parquet";
         return Err(Refusal::new(why));
+    }
+    if is_parquet && (place.is_none() || !cfg!(feature = "parquet")) {
+        return Err(Refusal::new(match place {
+            Some(_) => {
+                "this program was built without Parquet: cargo build -p trik --features parquet makes one with it"
+            }
+            None => "a table in Parquet is a file: name it with -o",
+        }));
     }
     let mut opened = open(&args.file)?;
     let is_wanted =
@@ -74,6 +105,13 @@ pub(crate) fn run(args: &ExportArgs) -> Result<u8, Refusal> {
         return Ok(0);
     };
     let fresh = Fresh::new(place, &args.file, args.force)?;
+    #[cfg(feature = "parquet")]
+    if is_parquet {
+        let out = fresh.file()?;
+        parquet::write(&mut opened, &columns, last, out, (&args.file, place))?;
+        fresh.place()?;
+        return Ok(0);
+    }
     let out = BufWriter::new(fresh.file()?);
     write(&mut opened, &columns, last, out, &args.file, place)?;
     fresh.place()?;
@@ -88,6 +126,8 @@ fn columns(
 ) -> Result<Columns, Error> {
     let mut columns = Columns {
         names: Vec::new(),
+        cells: Vec::new(),
+        units: Vec::new(),
         of_layout: HashMap::new(),
         nodes: Vec::new(),
     };
@@ -100,11 +140,18 @@ fn columns(
         }
         for layout in opened.layouts_of(number) {
             let mut cells = Vec::new();
-            for name in cell_names(&node.path, &opened.layouts()[layout]) {
+            let layout_of = &opened.layouts()[layout];
+            let kinds = kinds(layout_of);
+            for (name, cell) in cell_names(&node.path, layout_of).into_iter().zip(kinds) {
                 let next = columns.names.len();
                 let column = *known.entry(name.clone()).or_insert(next);
                 if column == next {
                     columns.names.push(name);
+                    columns.cells.push(cell);
+                    columns.units.push(node.units.clone());
+                } else if columns.cells[column] != cell {
+                    // It had another type before: as a text each is what it was.
+                    columns.cells[column] = Cell::Text;
                 }
                 cells.push(column);
             }
@@ -130,6 +177,30 @@ fn cell_names(path: &str, layout: &Layout) -> Vec<String> {
             names.iter().map(|name| format!("{path}.{name}")).collect()
         }
         Layout::Bytes(_) | Layout::Text(_) => vec![path.to_owned()],
+    }
+}
+
+/// What the cells of a layout have.
+fn kinds(layout: &Layout) -> Vec<Cell> {
+    match layout {
+        Layout::Fields(fields) => fields.iter().map(|field| kind(field.kind)).collect(),
+        Layout::Bytes(_) => vec![Cell::Bytes],
+        Layout::Text(_) => vec![Cell::Text],
+    }
+}
+
+fn kind(kind: Kind) -> Cell {
+    match kind {
+        Kind::I8 => Cell::Whole(8, true),
+        Kind::U8 => Cell::Whole(8, false),
+        Kind::I16 => Cell::Whole(16, true),
+        Kind::U16 => Cell::Whole(16, false),
+        Kind::I32 => Cell::Whole(32, true),
+        Kind::U32 => Cell::Whole(32, false),
+        Kind::I64 => Cell::Whole(64, true),
+        Kind::U64 => Cell::Whole(64, false),
+        Kind::F32 => Cell::Single,
+        Kind::F64 => Cell::Double,
     }
 }
 

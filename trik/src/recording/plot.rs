@@ -1,8 +1,9 @@
 //! `trik plot`: numbers of a recording over time, as a picture.
 //!
-//! Owns which numbers are drawn, and what is left of them: of each step of time the first, least, greatest and last number,
-//! so that a long recording makes no larger picture and no peak is lost. Axes and lines are the business of `chart`.
+//! Owns which numbers are drawn, and where. What is left of a long recording is known to `line`; axes are the business of
+//! `chart`.
 
+mod line;
 mod png;
 
 use super::shared::{Opened, Progress, has_ending, moment, open};
@@ -16,17 +17,19 @@ use clap::Args;
 use journal::layout::Layout;
 use journal::read::{Event, EventKind};
 use lang_text::problem::Locale;
+use lang_text::svg::Svg;
+pub(crate) use line::Line;
 use recorder::pattern::matches;
 use std::path::PathBuf;
 
 /// Size of a panel, and what is around it, in px.
-const PANEL: (f64, f64) = (560.0, 110.0);
+pub(crate) const PANEL: (f64, f64) = (560.0, 110.0);
 const LEFT: f64 = 80.0;
 const TOP: f64 = 30.0;
 const RIGHT: f64 = 20.0;
 const BOTTOM: f64 = 36.0;
 /// Height of the mark of a failure.
-const MARK: f64 = 8.0;
+pub(crate) const MARK: f64 = 8.0;
 
 /// The options of `trik plot`.
 #[derive(Args, Clone, Debug)]
@@ -51,28 +54,6 @@ pub(crate) struct PlotArgs {
     /// Overwrite the picture if it exists.
     #[arg(long)]
     pub force: bool,
-}
-
-/// One number over time.
-struct Line {
-    node: usize,
-    name: String,
-    title: String,
-    steps: Vec<Step>,
-    /// Moments of failures, in s.
-    faults: Vec<f64>,
-    /// Since when there is no number, in s.
-    lost: Option<f64>,
-    /// Gaps within the last step of time.
-    gaps: usize,
-}
-
-/// What is left of all numbers within a step of time: first, least, greatest and last, each with its moment in s.
-struct Step {
-    number: usize,
-    /// When what was before had ended, in s, if there was no number in between.
-    gap: Option<f64>,
-    points: [(f64, f64); 4],
 }
 
 /// Draws it.
@@ -106,7 +87,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
     opened.seek(first);
     read(&mut opened, &mut lines, (begin, first, last))
         .map_err(|why| Error::file(&args.file, why))?;
-    if lines.iter().all(|line| line.steps.is_empty()) {
+    if lines.iter().all(Line::is_empty) {
         return Err(Error::file(&args.file, "nothing happens in this time").into());
     }
     let second = |at: u64| (at - begin) as f64 / 1e9;
@@ -148,15 +129,11 @@ fn lines(opened: &Opened, args: &PlotArgs) -> Result<Vec<Line>, Error> {
                 "" => String::new(),
                 unit => format!(", {}", harmless(unit)),
             };
-            lines.push(Line {
+            lines.push(Line::new(
                 node,
                 name,
-                title: format!("{}{unit}", harmless(&channel)),
-                steps: Vec::new(),
-                faults: Vec::new(),
-                lost: None,
-                gaps: 0,
-            });
+                format!("{}{unit}", harmless(&channel)),
+            ));
         }
     }
     match is_used.iter().position(|used| !used) {
@@ -234,84 +211,14 @@ fn take(opened: &Opened, lines: &mut [Line], event: &Event, step: usize, at: f64
     }
 }
 
-impl Line {
-    fn take(&mut self, number: usize, at: f64, value: f64) {
-        if !value.is_finite() {
-            self.lost.get_or_insert(at);
-            return;
-        }
-        let gap = self.lost.take();
-        match self.steps.last_mut() {
-            // More gaps than these cannot be seen.
-            Some(step)
-                if step.number == number
-                    && (gap.is_none() || self.gaps == limits::PLOT_GAPS_MAX) =>
-            {
-                let [_, least, greatest, last] = &mut step.points;
-                if value < least.1 {
-                    *least = (at, value);
-                }
-                if value > greatest.1 {
-                    *greatest = (at, value);
-                }
-                *last = (at, value);
-            }
-            last => {
-                let is_same = last.is_some_and(|step| step.number == number);
-                self.gaps = if is_same { self.gaps + 1 } else { 0 };
-                self.steps.push(Step {
-                    number,
-                    gap,
-                    points: [(at, value); 4],
-                });
-            }
-        }
-    }
-
-    fn fail(&mut self, at: f64) {
-        self.lost.get_or_insert(at);
-        if self.faults.len() < limits::PLOT_FAULTS_MAX {
-            self.faults.push(at);
-        }
-    }
-
-    /// Places of the pen up to the end. A number holds until the next one comes or the node fails, as for a program that
-    /// reads; a gap is a place without a number.
-    fn points(&self, end: f64) -> Vec<(f64, f64)> {
-        let mut points: Vec<(f64, f64)> = Vec::new();
-        for step in &self.steps {
-            let held = points.last().copied();
-            if let Some((lost, (_, value))) = step.gap.zip(held) {
-                points.extend([(lost, value), (f64::NAN, f64::NAN)]);
-            }
-            let mut of_step = step.points;
-            of_step[1..3].sort_by(|one, other| one.0.total_cmp(&other.0));
-            for (at, value) in of_step {
-                if let Some((_, held)) = points.last().filter(|last| last.1.is_finite())
-                    && *held != value
-                {
-                    points.push((at, *held));
-                }
-                if points.last() != Some(&(at, value)) {
-                    points.push((at, value));
-                }
-            }
-        }
-        if let Some((_, value)) = points.last().copied() {
-            points.push((self.lost.unwrap_or(end), value));
-        }
-        points
-    }
-}
-
-/// Width and height of the picture, in px.
-fn size(lines: &[Line]) -> (f64, f64) {
+/// Width and height of the picture with so many panels, in px.
+pub(crate) fn size(panels: usize) -> (f64, f64) {
     let each = PANEL.1 + BOTTOM + TOP;
-    (LEFT + PANEL.0 + RIGHT, 10.0 + each * lines.len() as f64)
+    (LEFT + PANEL.0 + RIGHT, 10.0 + each * panels as f64)
 }
 
 /// The panel with this number.
-fn panel(at: usize, points: &[(f64, f64)], across: (f64, f64)) -> Panel {
+pub(crate) fn panel(at: usize, points: &[(f64, f64)], across: (f64, f64)) -> Panel {
     let each = PANEL.1 + BOTTOM + TOP;
     Panel {
         left: LEFT,
@@ -323,7 +230,7 @@ fn panel(at: usize, points: &[(f64, f64)], across: (f64, f64)) -> Panel {
 }
 
 fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
-    let (width, height) = size(lines);
+    let (width, height) = size(lines.len());
     let mut svg = chart::sheet(name, width, height);
     for (at, line) in lines.iter().enumerate() {
         let points = line.points(across.1);
@@ -331,74 +238,23 @@ fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
         let is_last = at + 1 == lines.len();
         panel.frame(&mut svg, if is_last { "t, s" } else { "" }, &line.title);
         panel.line(&mut svg, points.into_iter(), false);
-        let low = panel.top + PANEL.1;
-        let marks = line.faults.iter().flat_map(|fault| {
-            let (at, _) = panel.point(*fault, 0.0);
-            [('M', (at, low)), ('L', (at, low - MARK))]
-        });
-        if !line.faults.is_empty() {
-            svg.tag("path")
-                .with("stroke", "#c0392b")
-                .with("stroke-width", "2")
-                .path(1, marks)
-                .close();
-        }
+        marks(&mut svg, &panel, line);
     }
     svg.finish()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn line() -> Line {
-        Line {
-            node: 0,
-            name: "x".to_owned(),
-            title: "a.x".to_owned(),
-            steps: Vec::new(),
-            faults: Vec::new(),
-            lost: None,
-            gaps: 0,
-        }
-    }
-
-    #[test]
-    fn a_number_holds_until_the_next_one_or_a_failure() {
-        let mut line = line();
-        line.take(0, 0.0, 1.0);
-        line.take(10, 1.0, 2.0);
-        line.fail(3.0);
-        line.take(40, 4.0, 5.0);
-        let points = line.points(9.0);
-        let before = [(0.0, 1.0), (1.0, 1.0), (1.0, 2.0), (3.0, 2.0)];
-        assert_eq!(points[..4], before);
-        assert!(points[4].0.is_nan());
-        assert_eq!(points[5..], [(4.0, 5.0), (9.0, 5.0)]);
-        // What is lost to the end is drawn no further.
-        line.fail(5.0);
-        assert_eq!(line.points(9.0).last(), Some(&(5.0, 5.0)));
-    }
-
-    #[test]
-    fn many_numbers_take_little_and_no_peak_is_lost() {
-        let mut line = line();
-        for at in 0..100_000_u32 {
-            let value = match at {
-                50_000 => 9.0,
-                _ if at % 2 == 0 => f64::NAN,
-                _ => f64::from(at % 3),
-            };
-            line.take(at as usize / 10_000, at.into(), value);
-            line.fail(at.into());
-        }
-        assert!(line.steps.len() <= 10 * (limits::PLOT_GAPS_MAX + 1));
-        assert_eq!(line.faults.len(), limits::PLOT_FAULTS_MAX);
-        let greatest = line
-            .points(1e5)
-            .iter()
-            .map(|point| point.1)
-            .fold(0.0, f64::max);
-        assert_eq!(greatest, 9.0);
+/// Where it failed.
+pub(crate) fn marks(svg: &mut Svg, panel: &Panel, line: &Line) {
+    let low = panel.top + PANEL.1;
+    let marks = line.faults.iter().flat_map(|fault| {
+        let (at, _) = panel.point(*fault, 0.0);
+        [('M', (at, low)), ('L', (at, low - MARK))]
+    });
+    if !line.faults.is_empty() {
+        svg.tag("path")
+            .with("stroke", "#c0392b")
+            .with("stroke-width", "2")
+            .path(1, marks)
+            .close();
     }
 }

@@ -29,6 +29,27 @@ pub(crate) struct ReplayArgs {
     /// End when the recording is at its end; exit status 1 if a program has written something else than was recorded.
     #[arg(long, conflicts_with = "is_loop")]
     pub exit: bool,
+    /// Run the converters of this configuration on what devices gave, and give what comes of it; all other nodes give what
+    /// was recorded. The recording has it if it was made with trik record --raw.
+    #[arg(long, value_name = "FILE.lua")]
+    pub config: Option<PathBuf>,
+    /// Directory of files that this configuration includes, searched before /etc/trikfs; may be given several times.
+    #[arg(long, value_name = "DIR", requires = "config")]
+    pub include: Vec<PathBuf>,
+    /// Mount nothing: tell where what the configuration makes differs from what was recorded, as fast as that goes. The exit
+    /// status is 1 if anything differs.
+    #[arg(long, requires = "config", conflicts_with_all = ["is_loop", "paused", "exit", "mountpoint"])]
+    pub diff: bool,
+    /// With --diff, only nodes whose path is matched: * stands for anything, and a group for all below it; may be given
+    /// several times.
+    #[arg(long, value_name = "PATTERN", requires = "diff")]
+    pub only: Vec<String>,
+    /// With --diff, both drawn in one picture, a new SVG file; - is standard output.
+    #[arg(long, short, value_name = "OUT.svg", requires = "diff")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the picture if it exists.
+    #[arg(long, requires = "output")]
+    pub force: bool,
     /// Do not show where the replay is, even on a terminal.
     #[arg(long)]
     pub no_view: bool,

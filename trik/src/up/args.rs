@@ -65,6 +65,9 @@ pub(crate) struct UpArgs {
     /// --allow-other --group GROUP` does.
     #[arg(long, value_name = "GROUP")]
     pub group: Option<String>,
+    /// Let trik record --raw record what devices give before it is converted, as trikfs mount --raw does.
+    #[arg(long)]
+    pub raw: bool,
     /// Mount the devices of the robot a second time as the classes of ev3dev, for programs written for those [default: the
     /// mount point of the robot with .ev3dev added to its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]

@@ -93,10 +93,13 @@ fn the_last_minutes_are_fetched_with_what_programs_did() {
     assert!(has(Story::World, "\"robots\":[{\"at\":["), "{lines:?}");
     let reader = Reader::open(File::open(&file).expect("a file")).expect("a recording");
     let attached = reader.attachments();
-    assert!(
-        attached.iter().any(|(name, _)| name == "world.json"),
-        "{attached:?}"
-    );
+    for wanted in ["world.json", "config.lua", "programs/drive.js"] {
+        let is_there = attached.iter().any(|(name, _)| name == wanted);
+        assert!(is_there, "{attached:?}");
+    }
+    let words = ["info", name, "--attachment", "programs/drive.js"];
+    let program = home.run(&words).good();
+    assert!(program.contains("print('on the way')"), "{program}");
     // The robot has it too, and what is there is not written over.
     assert_eq!(content(&saved(&folder, "asked")).1, lines);
     let output = home.run(&["box", "save", "-o", name, "--robot", robot.ip()]);

@@ -222,12 +222,17 @@ fn runs_programs(client: &mut Client, reachable: &Reachable) {
         let told = client.tells(&[r#""id":"asked""#]);
         told.contains(r#"{"name":"diagram/n","value":1}"#)
     });
+    // What programs do is a channel as soon as there is some of it.
+    client.order("subscribe /diagram");
+    client.tells(&[r#""topic":"/diagram""#, r#"\"n\""#]);
     client.order("set diagram/n 7");
     client.tells(&[r#""id":"told""#, r#"{"name":"diagram/n","value":7}"#]);
+    client.order("subscribe /programs");
     client.order("call /stop");
     client.tells(&[r#""what":"done""#]);
     client.order("call /run count.qrs");
     client.tells(&[r#""what":"done""#]);
+    client.tells(&[r#""topic":"/programs""#, "count.qrs has started"]);
     drop(running);
 }
 

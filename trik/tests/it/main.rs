@@ -2,9 +2,11 @@
 //!
 //! One binary, so that linking happens once. Below is the table of contents.
 
-/// Solutions of tasks, judged.
+/// Recordings through another configuration.
+mod anew;
 mod black_box;
 mod bridge;
+/// Solutions of tasks, judged.
 mod check;
 /// Models of robots: what their document shows, files and exit codes.
 mod dcml;

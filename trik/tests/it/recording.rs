@@ -94,6 +94,51 @@ fn the_document_of_recordings_is_what_really_happens() {
 }
 
 #[test]
+fn a_file_that_goes_with_a_recording_goes_where_the_person_says() {
+    let board = Board::new();
+    let file = File::create_new(board.dir().join("run.mcap")).expect("a new file");
+    let mut out = Writer::new(BufWriter::new(file), "test 1").expect("begun");
+    let hostile = "../../tmp/\u{1b}[2J/etc/passwd";
+    for (name, bytes) in [
+        ("config.lua", "old"),
+        (hostile, "harm"),
+        ("config.lua", "trikfs = {}"),
+    ] {
+        out.attach(ZERO, name, "text/x-lua", bytes.as_bytes())
+            .expect("a file");
+    }
+    out.finish().expect("finished");
+    let info = trik(&board, &["info", "run.mcap"]).good();
+    assert!(info.contains("file      config.lua (11 bytes)"), "{info}");
+    assert!(!info.contains('\u{1b}'), "{info}");
+    let words = ["info", "run.mcap", "--attachment", "config.lua"];
+    assert_eq!(trik(&board, &words).good(), "trikfs = {}");
+    // Its name is no path.
+    let words = ["info", "run.mcap", "--attachment", hostile, "-o", "taken"];
+    trik(&board, &words).good();
+    let taken = fs::read_to_string(board.dir().join("taken")).expect("a file");
+    assert_eq!(taken, "harm");
+    let refused = why_not(&board, &words);
+    assert!(refused.contains("taken is there already"), "{refused}");
+    let onto = [
+        "info",
+        "run.mcap",
+        "--attachment",
+        "config.lua",
+        "-o",
+        "run.mcap",
+        "--force",
+    ];
+    assert_eq!(trik(&board, &onto).status.code(), Some(1));
+    let refused = why_not(&board, &["info", "run.mcap", "--attachment", "x.py"]);
+    assert!(
+        refused.contains("no file x.py goes with it; there are config.lua, ../"),
+        "{refused}"
+    );
+    assert!(!refused.contains('\u{1b}'), "{refused}");
+}
+
+#[test]
 fn a_table_has_each_number_in_its_column_and_no_formula() {
     let board = recorded();
     let table = trik(&board, &["export", "run.mcap", "-o", "run.csv"]).good();
@@ -119,7 +164,10 @@ fn a_table_has_each_number_in_its_column_and_no_formula() {
     assert_eq!(some, "time_s,motors/M1.power,fault\n5.0,-60,\n");
     let words = ["export", "run.mcap", "-o", "run.ods"];
     let refused = why_not(&board, &words);
-    assert!(refused.contains("its name ends with .csv"), "{refused}");
+    assert!(
+        refused.contains("its name ends with .csv or .parquet"),
+        "{refused}"
+    );
     // The older spelling of the ending.
     trik(&board, &["export", "run.mcap", "--csv", "-o", "table"]).good();
     let old = fs::read_to_string(board.dir().join("table")).expect("a table");

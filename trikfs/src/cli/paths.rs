@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// The cache directory cannot be used.
-pub(super) fn search_paths(
+pub(crate) fn search_paths(
     include: Vec<PathBuf>,
     cache_dir: Option<&Path>,
     device_root: Option<PathBuf>,

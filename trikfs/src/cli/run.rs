@@ -199,6 +199,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
             true => Readers::All,
             false => Readers::Owner,
         }),
+        raw: args.tree.raw,
         ledger: Some(inheritance.ledger),
         ready: Box::new(move |nodes| {
             if detached {

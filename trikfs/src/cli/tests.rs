@@ -76,7 +76,8 @@ fn mount_takes_all_its_options() {
     assert_eq!(args.tree.config_group, Some(12));
     assert_eq!(args.tree.group, Some(13));
     assert!(args.allow_other && args.background && !args.detached);
-    assert!(args.tree.no_sample_bus);
+    assert!(args.tree.no_sample_bus && !args.tree.raw);
+    assert!(mount_args(&["mount", "--raw", "/trikfs"]).tree.raw);
     assert_eq!(args.mountpoint, PathBuf::from("/trikfs"));
 }
 

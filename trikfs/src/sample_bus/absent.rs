@@ -66,6 +66,19 @@ impl SampleBus {
     }
 }
 
+impl SampleBus {
+    /// Does nothing.
+    pub fn set_raw(&self, _has_raw: bool) {}
+
+    /// None.
+    ///
+    /// # Errors
+    /// None.
+    pub fn ring_of_raw(&self, _description: &NodeDescription) -> Result<Option<Ring>, BusError> {
+        Ok(None)
+    }
+}
+
 impl Ring {
     /// Cannot be called.
     pub fn publish(&mut self, _stamp: Stamp, _tuple: &[u8]) {

@@ -13,7 +13,7 @@ use sample_bus::place::{self, Directory, SHARED_MEMORY};
 use sample_bus::{Rights, Writer};
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -24,6 +24,8 @@ pub struct SampleBus {
     /// Why there is no directory.
     problem: Mutex<Option<BusError>>,
     used_bytes: Arc<AtomicUsize>,
+    /// Every node publishes what its source gives.
+    has_raw: AtomicBool,
 }
 
 struct Place {
@@ -145,6 +147,24 @@ impl SampleBus {
         let size = description.written_tuple_size();
         let name = place::written_file_name(&description.path);
         self.with_rights(description, name, size)
+    }
+
+    /// From now on every node has a ring of what its source gives, not only those whose description asks for it.
+    pub fn set_raw(&self, has_raw: bool) {
+        self.has_raw.store(has_raw, Ordering::Relaxed);
+    }
+
+    /// A ring for what a node's source gives before it is converted, with the rights of its files; as `ring`. None also if
+    /// nobody asked for it.
+    ///
+    /// # Errors
+    /// Why this node has none.
+    pub fn ring_of_raw(&self, description: &NodeDescription) -> Result<Option<Ring>, BusError> {
+        if !(description.raw || self.has_raw.load(Ordering::Relaxed)) {
+            return Ok(None);
+        }
+        let size = description.input_tuple_size;
+        self.with_rights(description, place::raw_file_name(&description.path), size)
     }
 
     fn with_rights(

@@ -30,7 +30,7 @@ enum Anchor {
 
 /// The picture as a file.
 pub(super) fn picture(lines: &[Line], across: (f64, f64)) -> Vec<u8> {
-    let (width, height) = size(lines);
+    let (width, height) = size(lines.len());
     let mut sheet = Canvas(Pixels::new(side(width), side(height), Some(WHITE)));
     for (at, line) in lines.iter().enumerate() {
         let points = line.points(across.1);
