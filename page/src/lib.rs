@@ -10,7 +10,7 @@
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
 //! - `shared`, `control`: what all requests share; one of all browsers drives
-//! - `drive`: what it writes to the tree, and rest when it leaves
+//! - `drive`: what it writes to the tree, and rest when it leaves; `inside`: the converters of a node that it looks into
 //! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
 //!   blocks
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
@@ -29,6 +29,7 @@ pub mod error;
 mod files;
 mod flows;
 mod guard;
+mod inside;
 pub mod limits;
 mod plain;
 pub mod playback;

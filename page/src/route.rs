@@ -8,7 +8,7 @@ use crate::diagrams::{self, Change};
 use crate::door::Peer;
 use crate::error::Error;
 use crate::shared::Shared;
-use crate::{configuration, files, guard, limits, plain, store};
+use crate::{configuration, files, guard, inside, limits, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};
 use axum::http::header::{
@@ -35,6 +35,7 @@ pub fn router(shared: Arc<Shared>) -> Router {
         .route("/diagram/{*name}", get(diagram))
         .route("/changed/{*name}", get(changed))
         .route("/configuration", get(configured))
+        .route("/converters", get(converters))
         .route("/plain", get(table))
         .fallback(file)
         .layer(from_fn_with_state(shared.clone(), enter))
@@ -105,6 +106,7 @@ fn is_data(uri: &Uri) -> bool {
         "diagram",
         "changed",
         "configuration",
+        "converters",
     ]
     .contains(&first)
 }
@@ -240,6 +242,14 @@ async fn configured(
     let locale = locale(&query);
     let seen = shared.clone();
     let work = move || configuration::read(&seen.settings.tree);
+    with_files(&shared, locale, work, json).await
+}
+
+async fn converters(State(shared): State<Arc<Shared>>) -> Response {
+    // It says nothing in words.
+    let locale = Locale::English;
+    let seen = shared.clone();
+    let work = move || Ok(inside::list(&seen.settings.tree));
     with_files(&shared, locale, work, json).await
 }
 

@@ -3,11 +3,11 @@
 // Owns what was heard of it. Values come thousands of times in a second, so they are in plain objects, and `tick` says, once for
 // each picture, that something has changed.
 
+import { Inside } from '../inside/inside.svelte';
 import { Link } from '../link/link';
 import type { News, Playback } from '../link/words';
 import type { Around } from '../world/around';
-import { Ground } from '../world/ground.svelte';
-import { poseOf } from '../world/mount';
+import { Ground, saysWhere } from '../world/ground.svelte';
 import { ToldWorld } from '../world/told.svelte';
 import type { Scene, WorldState } from '../world/types';
 import { Clock } from './clock';
@@ -45,6 +45,8 @@ const RATE_HZ = 60;
 const ABOUT = 'trikfs';
 /** Lines that are kept. */
 const LINES = 500;
+/** ESTALE: the node has left the tree. */
+const LEFT = 116;
 /** A line of the log is about the order that was refused so shortly before or after it. */
 const MISTAKE_MS = 1000;
 
@@ -72,6 +74,8 @@ export class Robot {
   readonly #ground: Ground;
   /** A node says where the robot is. */
   #saysWhere = $state(false);
+  /** Nodes that a connection has told of, until its first sample: then it has told of all. */
+  #toldOf: Set<string> | undefined;
 
   readonly #nodes = new Map<string, Live>();
   #paths = $state.raw<string[]>([]);
@@ -83,6 +87,7 @@ export class Robot {
   readonly programs: Programs;
   readonly debugger: Debugger;
   readonly configuration: Configuration;
+  readonly inside: Inside;
   readonly #wanted: Wanted;
   readonly #stops = new Set<() => void>();
   readonly #watchers = new Set<(path: string, fields: Fields) => void>();
@@ -96,6 +101,7 @@ export class Robot {
     this.programs = new Programs(this.link);
     this.debugger = new Debugger(this.link);
     this.configuration = new Configuration(this.link);
+    this.inside = new Inside(this.link);
     this.#wanted = new Wanted(address, this);
     this.#ground = new Ground(
       () => this.#nodes,
@@ -241,8 +247,15 @@ export class Robot {
         if (news.there) this.#begin();
         break;
       case 'written':
-        if (news.why === null) this.refused.delete(news.path);
+        if (news.param !== null) {
+          const why = news.why === null ? null : (this.#mistakeOf(news.path) ?? news.why);
+          this.inside.written(news.path, news.param, why);
+        } else if (news.why === null) this.refused.delete(news.path);
         else this.refused.set(news.path, this.#mistakeOf(news.path) ?? news.why);
+        this.#isDirty = true;
+        break;
+      case 'stages':
+        this.inside.heard(news.path, news.at_s, news.tuples);
         this.#isDirty = true;
         break;
       case 'programs':
@@ -285,6 +298,7 @@ export class Robot {
   /** The robot is there: everything is told from now on. */
   #begin(): void {
     this.#recording = new Recording(this);
+    this.#toldOf = new Set();
     this.#clock.begin();
     this.link.request(`stream:;hz=${RATE_HZ}`);
     this.programs.begin();
@@ -294,6 +308,7 @@ export class Robot {
   // What the recording says.
 
   node(node: Node): void {
+    this.#toldOf?.add(node.path);
     const old = this.#nodes.get(node.path);
     if (old?.node.format === node.format) return;
     this.#nodes.set(node.path, {
@@ -304,11 +319,29 @@ export class Robot {
       fault: '',
       histories: new Map(),
     });
+    this.#listed();
+  }
+
+  /** Other nodes are there than before. */
+  #listed(): void {
     this.#paths = [...this.#nodes.keys()].sort();
-    this.#saysWhere ||= poseOf(node) !== undefined;
+    this.#saysWhere = saysWhere(this.#nodes);
+  }
+
+  /** Nodes that are not in the tree any more. */
+  #part(paths: readonly string[]): void {
+    for (const path of paths) this.#nodes.delete(path);
+    if (paths.length > 0) this.#listed();
+    this.#isDirty = true;
   }
 
   sample(path: string, time: number, fields: Fields): void {
+    const told = this.#toldOf;
+    if (told) {
+      // The robot may have come back with another tree. What is wanted comes over a connection of its own.
+      this.#toldOf = undefined;
+      this.#part([...this.#nodes.keys()].filter((path) => !told.has(path) && !this.#wanted.has(path)));
+    }
     const known = this.#nodes.get(path);
     if (!known) return;
     this.#hear(time);
@@ -329,7 +362,9 @@ export class Robot {
 
   line(line: Line): void {
     this.#hear(line.time);
-    if (line.topic === '/faults') {
+    if (line.topic === '/faults' && line.errno === LEFT) {
+      this.#part([line.name.replace(/^\//, '')]);
+    } else if (line.topic === '/faults') {
       const known = this.#nodes.get(line.name.replace(/^\//, ''));
       if (known) {
         known.fault = line.text;
@@ -346,8 +381,11 @@ export class Robot {
 
   /** The log says in a sentence what the number of an error only hints at; it may come before or after that. */
   #explain(line: Line): void {
-    const text = /^caller: (.*)/s.exec(line.text)?.[1];
-    if (text === undefined || !this.#nodes.has(line.name)) return;
+    const text = /^(?:caller: )?(params\/.*)/s.exec(line.text)?.[1] ?? /^caller: (.*)/s.exec(line.text)?.[1];
+    if (text === undefined) return;
+    const param = /^params\/(\S+)/.exec(text)?.[1];
+    if (param !== undefined) this.inside.explain(line.name, param, text);
+    else if (!this.#nodes.has(line.name)) return;
     this.#mistakes.set(line.name, { text, at_ms: performance.now() });
     if (this.refused.has(line.name)) this.refused.set(line.name, text);
     this.#isDirty = true;
