@@ -91,6 +91,8 @@ pub enum News {
         version: String,
         /// There is a world around the robot.
         has_world: bool,
+        /// It takes orders.
+        orders_world: bool,
         /// This computer may do things.
         may_drive: bool,
         /// The configuration may be replaced from here.
@@ -162,6 +164,7 @@ impl News {
                 name,
                 version,
                 has_world,
+                orders_world,
                 may_drive,
                 configures,
             } => object(
@@ -170,6 +173,7 @@ impl News {
                     ("name", name.as_str().into()),
                     ("version", version.as_str().into()),
                     ("world", (*has_world).into()),
+                    ("orders", (*orders_world).into()),
                     ("drives", (*may_drive).into()),
                     ("configures", (*configures).into()),
                 ],
@@ -343,6 +347,7 @@ mod tests {
                 name: "a\"b".to_owned(),
                 version: "1".to_owned(),
                 has_world: true,
+                orders_world: false,
                 may_drive: false,
                 configures: false,
             },

@@ -13,6 +13,7 @@ mod player;
 mod recording;
 mod tree;
 mod words;
+mod world;
 
 use crate::error::Error;
 use crate::place::{self, Place};
@@ -22,7 +23,7 @@ use crate::up::page::{self, Served};
 use crate::up::session::{Beneath, Over, Session, signals};
 use crate::up::trikd::Trikd;
 use ::page::playback::{Playback, State};
-use ::page::world::Refused;
+use ::page::world::{Refused, World};
 use args::ReplayArgs;
 use file::FileRecording;
 use order::Order;
@@ -31,6 +32,7 @@ use recording::Recording;
 use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
+use world::RecordedWorld;
 
 /// Replays until somebody stops it.
 ///
@@ -87,8 +89,8 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         place.mountpoint.clone().into(),
     ];
     let shown = page::Beneath {
+        world: world_of(&args.file, &player)?,
         playback: Some(player.clone()),
-        ..page::Beneath::default()
     };
     let page = Served::start(
         &args.serving,
@@ -106,6 +108,13 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         Some(why) => end.and(Err(Error::Refused(why))),
         None => end.map(|()| state.differences.is_empty() || !args.exit),
     }
+}
+
+/// The world of the recording, where the player is.
+fn world_of(file: &Path, player: &Arc<Player>) -> Result<Option<Arc<dyn World>>, Error> {
+    let player = player.clone();
+    let world = RecordedWorld::open(file, move || player.position())?;
+    Ok(world.map(|world| Arc::new(world) as Arc<dyn World>))
 }
 
 /// An option of trikfs in one word, so that a path that begins with a dash stays a value.

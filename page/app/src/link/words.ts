@@ -19,7 +19,16 @@ export type Order =
 
 /** What it is told. */
 export type News =
-  | { is: 'hello'; name: string; version: string; world: boolean; drives: boolean; configures: boolean }
+  | {
+      is: 'hello';
+      name: string;
+      version: string;
+      world: boolean;
+      /** The world takes orders: it is none that was recorded. */
+      orders: boolean;
+      drives: boolean;
+      configures: boolean;
+    }
   | { is: 'control'; mine: boolean; who: string | null }
   | { is: 'robot'; there: boolean; why: string | null }
   | { is: 'written'; path: string; param: string | null; value: string; why: string | null }

@@ -110,7 +110,7 @@ export function aroundOf(
 }
 
 /** A world whose scene has no room in a recording. */
-const BARE: Scene = {
+export const BARE: Scene = {
   bounds: [-3, -3, 3, 3],
   floor: '#ffffff',
   items: [],

@@ -13,11 +13,13 @@ import type { Scene, WorldState } from '../world/types';
 import { Clock } from './clock';
 import { Configuration } from './configuration.svelte';
 import { Debugger } from './debugger.svelte';
+import { BARE, sceneOf, stateOf } from '../past/around.svelte';
 import type { Past } from '../past/past.svelte';
 import { History, type Timeline } from './history';
 import { Programs } from './program.svelte';
 import { type Fields, type Line, type Node, Recording } from './recording';
 import { Wanted } from './wanted';
+import { heard } from '../words';
 
 /** A node and what it gave. */
 export interface Known {
@@ -49,6 +51,8 @@ const LINES = 500;
 const LEFT = 116;
 /** A line of the log is about the order that was refused so shortly before or after it. */
 const MISTAKE_MS = 1000;
+/** Nodes of which such a line is kept. */
+const MISTAKES = 1000;
 
 export class Robot {
   /** Something has changed since the last picture; only reading it makes a component look again. */
@@ -60,6 +64,7 @@ export class Robot {
   name = $state('');
   version = $state('');
   hasWorld = $state(false);
+  #ordersWorld = $state(false);
   mayDrive = $state(true);
   isInControl = $state(false);
   /** The address of the browser that is in control; empty if none is. */
@@ -161,7 +166,7 @@ export class Robot {
 
   /** The world takes orders. */
   get mayOrderWorld(): boolean {
-    return this.hasWorld && !this.past;
+    return this.#ordersWorld && !this.past;
   }
 
   /** The nodes of the robot as it is now, whatever is shown. */
@@ -235,6 +240,7 @@ export class Robot {
         this.name = news.name;
         this.version = news.version;
         this.hasWorld = news.world;
+        this.#ordersWorld = news.orders;
         this.mayDrive = news.drives;
         this.configuration.mayReplace = news.configures;
         break;
@@ -262,16 +268,17 @@ export class Robot {
         void this.programs.changed(news.name, news.to);
         break;
       case 'refused':
-        this.refusal = news.why;
+        this.refusal = heard(news.why);
         break;
       case 'configured':
         this.configuration.configured(news.why);
         break;
       case 'scene':
-        this.#told.scene = news.scene;
+        // What was recorded may be from anywhere.
+        this.#told.scene = this.#ordersWorld ? news.scene : (sceneOf(news.scene) ?? BARE);
         break;
       case 'world':
-        this.#told.state = news.state;
+        this.#told.state = this.#ordersWorld ? news.state : (stateOf(news.state) ?? this.#told.state);
         this.#isDirty = true;
         break;
       case 'playback':
@@ -380,14 +387,15 @@ export class Robot {
   }
 
   /** The log says in a sentence what the number of an error only hints at; it may come before or after that. */
-  #explain(line: Line): void {
-    const text = /^(?:caller: )?(params\/.*)/s.exec(line.text)?.[1] ?? /^caller: (.*)/s.exec(line.text)?.[1];
-    if (text === undefined) return;
+  #explain({ text: line }: Line): void {
+    const [, path = '', rest = ''] = /^\[ *[\d.]+\] (.+?): (.*)$/s.exec(line) ?? [];
+    const [, caller, text = ''] = /^(caller: )?(.*)$/s.exec(rest) ?? [];
     const param = /^params\/(\S+)/.exec(text)?.[1];
-    if (param !== undefined) this.inside.explain(line.name, param, text);
-    else if (!this.#nodes.has(line.name)) return;
-    this.#mistakes.set(line.name, { text, at_ms: performance.now() });
-    if (this.refused.has(line.name)) this.refused.set(line.name, text);
+    if (param !== undefined) this.inside.explain(path, param, text);
+    if (caller === undefined) return;
+    this.#mistakes.set(path, { text, at_ms: performance.now() });
+    if (this.#mistakes.size > MISTAKES) this.#mistakes.clear();
+    if (this.refused.has(path)) this.refused.set(path, text);
     this.#isDirty = true;
   }
 

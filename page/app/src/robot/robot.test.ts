@@ -61,3 +61,22 @@ test('a robot that comes back with another tree has the nodes of that one', () =
   robot.sample('A1', 3, { distance: 7 });
   expect(robot.paths).toEqual(['A1', 'A2']);
 });
+
+test('the log says in a sentence why a value was refused, before the refusal or after it', () => {
+  const robot = new Robot('ws://robot/');
+  const log = (text: string) => robot.line({ ...fault('', 0), topic: '/log', name: 'trikfs', text });
+  const refuses = (param: string | null) =>
+    robot.news({ is: 'written', path: 'motors/M3', param, value: '7', why: 'out of range' });
+  log('[     0.518] motors/M3: caller: power is -100 to 100, not 700');
+  refuses(null);
+  expect(robot.refused.get('motors/M3')).toBe('power is -100 to 100, not 700');
+  log('[     9.000] motors/M3: device: gone');
+  log('[     9.000] motors/M3: caller: power is -100 to 100, not 7');
+  expect(robot.refused.get('motors/M3')).toBe('power is -100 to 100, not 7');
+  robot.inside.choose('motors/M3');
+  refuses('alpha');
+  log('[     9.000] motors/M3: params/alpha stays as it is: no');
+  expect(robot.inside.wrong).toEqual({ alpha: 'params/alpha stays as it is: no' });
+  log('no line of a node: caller: params/alpha');
+  expect(robot.inside.wrong).toEqual({ alpha: 'params/alpha stays as it is: no' });
+});
