@@ -170,6 +170,87 @@ export const ru: Words = {
     ['{device} on {path} did not answer within {ms} ms', '{device} на {path} не ответило за {ms} мс'],
     ['{path} was busy with other transfers for {ms} ms', 'шина {path} была занята другими {ms} мс'],
     ['no sample within timeout_ms', 'за timeout_ms не пришло ни одного значения'],
+    ['no answer from {device} on {path}: {why} (os error {number})', '{device} на {path} не отвечает: {why}'],
+    ['{path}: {count} transfers wait for it', 'шина {path} занята: её ждут обращений: {count}'],
+    ['{path}: the bus was closed inside a transfer', 'шина {path} закрылась посреди обращения'],
+    ['{path}: the sensor is not running ({reason})', '{path}: программа датчика не работает ({reason})'],
+    ['No such file or directory', 'такого файла нет'],
+    ['No such device', 'устройства нет'],
+    ['Input/output error', 'устройство отказало'],
+    ['Remote I/O error', 'на шине никто не отозвался'],
+    ['Connection timed out', 'устройство не ответило вовремя'],
+
+    // The nodes of the robot: config/lua/trik.
+    ['not measured yet', 'ещё не измерено'],
+    ['the coprocessor gave {number}, more than ten bits', 'сопроцессор дал {number} — больше десяти бит'],
+    ['no battery: {voltage} mV', 'батареи нет: {voltage} мВ'],
+    [
+      'not calibrated yet: let the robot stand still for {ms} ms',
+      'ещё не откалибровано: пусть робот постоит неподвижно {ms} мс',
+    ],
+    ['the accelerometer gives no gravity', 'акселерометр не показывает силы тяжести'],
+    ['the packet contradicts itself', 'пакет противоречит сам себе'],
+    ['the packet begins at {degrees} degrees', 'пакет начинается с {degrees} градусов'],
+    ['the servo is off', 'сервопривод выключен'],
+    ['no pulses', 'импульсов нет'],
+    [
+      'an encoder jumped by {degrees} degrees: the place is lost and begins anew at 0 0',
+      'энкодер скакнул на {degrees} градусов: место потеряно и снова начинается с 0 0',
+    ],
+    ['the encoder jumped by {way} ticks', 'энкодер скакнул на {way} делений'],
+    [
+      'the encoder stands still while half a turn was ordered: it is unplugged, or the wheel is stuck',
+      'энкодер стоит, хотя приказано пол-оборота: он не подключён, или колесо застряло',
+    ],
+    ['the wheel does not turn with full power', 'колесо не вращается и на полной мощности'],
+    [
+      'the encoder counts against the power: change the polarity of the motor or of the encoder',
+      'энкодер считает против мощности: смените полярность мотора или энкодера',
+    ],
+    [
+      'an encoder can only be set to 0, not to {position}',
+      'энкодер можно только обнулить, а не сделать равным {position}',
+    ],
+    [
+      'only 0 can be written; a position switches the servo on',
+      'записать можно только 0; включает сервопривод положение',
+    ],
+    ['params/{name} is {why}, not {value}', 'params/{name} — это {why}, а не {value}'],
+    ['{what} is {least} to {greatest}, not {value}', '{what}: от {least} до {greatest}, а не {value}'],
+    ['a number from {min} to {max}', 'число от {min} до {max}'],
+    ['a number up to {max}', 'число до {max}'],
+    ['a number from {min} on', 'число от {min}'],
+    ['a finite number', 'конечное число'],
+    ['params/{name} stays as it is: {why}', 'params/{name} остаётся прежним: {why}'],
+
+    // The world around a virtual robot.
+    ['that place is beyond the walls of the room', 'это место за стенами комнаты'],
+    ['there is no thing number {number} in this world', 'в этом мире нет предмета номер {number}'],
+    [
+      'this robot is in a room of its own; only one of `trik up --field` takes other worlds',
+      'у этого робота своя комната; другие миры принимает только робот от `trik up --field`',
+    ],
+    [
+      'the project of this world locks it: its walls and things stay',
+      'проект этого мира закрыл его: стены и предметы остаются на местах',
+    ],
+    ['the project of this world locks the place of the robot', 'проект этого мира закрыл место робота'],
+    ['speed takes {least} to {most}, not {word}', 'скорость бывает от {least} до {most}, а не {word}'],
+    ['no world can be read from this file: {why}', 'в этом файле не читается мир: {why}'],
+    [
+      'there is no world in this project; give a world model, FILE.xml',
+      'в этом проекте нет мира; дайте модель мира, FILE.xml',
+    ],
+    [
+      'this robot has no world around it that takes orders: choose another robot',
+      'вокруг этого робота нет мира, которым можно распоряжаться: выберите другого робота',
+    ],
+    ['what was recorded takes no orders', 'тем, что записано, нельзя распоряжаться'],
+    ["'{kind}' needs a number from 0 to {most}", "для '{kind}' нужно число от 0 до {most}"],
+    ['{kind} {word} is not between 0 and {most}', '{kind} {word} — не между 0 и {most}'],
+    ["'{word}' is no number", "'{word}' — не число"],
+    // A line of the log of the tree.
+    ['[{time}] {node}: {why}', '[{time}] {node}: {why}'],
   ],
 
   programs: 'Программы',
