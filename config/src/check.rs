@@ -28,9 +28,9 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 10] = [
-    "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stats", "units",
-    "value",
+const RESERVED_ATTRIBUTES: [&str; 11] = [
+    "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stages", "stats",
+    "units", "value",
 ];
 
 /// Checks everything that a program left. Gives the configuration and what is suspicious in it.

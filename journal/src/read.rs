@@ -279,8 +279,33 @@ impl<F: Read + Seek> Reader<F> {
         let found = indexes.find(|index| index.name == name);
         let index = found.ok_or_else(|| Error::Absent(format!("attachment {name}")))?;
         let (offset, length) = (index.offset, index.length);
+        self.attached(name, offset, length)
+    }
+
+    fn attached(&mut self, name: &str, offset: u64, length: u64) -> Result<Vec<u8>, Error> {
         let record = self.record(offset, length, ATTACHMENT_BYTES_MAX)?;
         attachment_of(&record).ok_or_else(|| Error::Damaged(format!("attachment {name}")))
+    }
+
+    /// When the file of this name began to hold that was in force at a moment; before the first one, that.
+    pub fn attachment_time(&self, name: &str, unix_ns: u64) -> Option<u64> {
+        let indexes = self.summary.attachment_indexes.iter();
+        let times = indexes.filter(|index| index.name == name);
+        let times = times.map(|index| index.log_time);
+        let until = times.clone().filter(|time| *time <= unix_ns).max();
+        until.or_else(|| times.min())
+    }
+
+    /// The last file of this name and time.
+    ///
+    /// # Errors
+    /// As for [`attachment`](Self::attachment).
+    pub fn attachment_of(&mut self, name: &str, unix_ns: u64) -> Result<Vec<u8>, Error> {
+        let mut indexes = self.summary.attachment_indexes.iter().rev();
+        let found = indexes.find(|index| index.name == name && index.log_time == unix_ns);
+        let index = found.ok_or_else(|| Error::Absent(format!("attachment {name}")))?;
+        let (offset, length) = (index.offset, index.length);
+        self.attached(name, offset, length)
     }
 
     /// Facts of this name; empty if there are none.

@@ -7,6 +7,7 @@ use crate::configuration;
 use crate::control::Browser;
 use crate::drive::{self, Moves};
 use crate::error::{Busy, Error};
+use crate::inside::{self, Stages};
 use crate::limits;
 use crate::relay::{self, Came, Outgoing, Request};
 use crate::shared::Shared;
@@ -31,6 +32,8 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale:
     // What the robot says waits in the robot, which leaves out what is old.
     let (came, from_robot) = mpsc::channel(1);
     let (looks, is_looked_at) = watch::channel(false);
+    let (inspects, inspected) = watch::channel(None);
+    let (tells_stages, stages) = watch::channel(None);
     let stop = Arc::<Notify>::default();
     let outgoing = Outgoing {
         requests: to_send,
@@ -45,6 +48,9 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale:
         shared.control.watch(),
         who,
     ));
+    // It ends when the listener is gone.
+    let (tree, turns) = (shared.settings.tree.clone(), shared.looks.clone());
+    tokio::spawn(inside::run(tree, inspected, tells_stages, turns));
     let ending = moves.clone();
     let listener = Listener {
         shared: shared.clone(),
@@ -54,6 +60,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale:
         requests,
         stop,
         looks,
+        inspects,
     };
     let teller = Teller {
         shared: shared.clone(),
@@ -62,6 +69,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale:
         told,
         from_robot,
         is_looked_at,
+        stages,
         locale,
     };
     tokio::select! {
@@ -82,6 +90,8 @@ struct Listener {
     requests: mpsc::Sender<Request>,
     stop: Arc<Notify>,
     looks: watch::Sender<bool>,
+    /// The node whose inside it wants to see.
+    inspects: watch::Sender<Option<String>>,
 }
 
 impl Listener {
@@ -139,9 +149,13 @@ impl Listener {
 
     fn obey(&self, order: Order) -> Result<(), Error> {
         match order {
-            Order::Write(path, value) => {
+            Order::Write(target, value) => {
                 self.need()?;
-                self.moves.write(path, value)
+                self.moves.write(target, value)
+            }
+            Order::Inspect(path) => {
+                self.inspects.send_replace(path);
+                Ok(())
             }
             Order::World(words) => {
                 self.need()?;
@@ -288,6 +302,7 @@ struct Teller {
     told: mpsc::Receiver<News>,
     from_robot: mpsc::Receiver<Came>,
     is_looked_at: watch::Receiver<bool>,
+    stages: watch::Receiver<Option<Stages>>,
     /// Sentences are in this language.
     locale: Locale,
 }
@@ -302,6 +317,7 @@ impl Teller {
                 name: settings.name.clone(),
                 version: env!("CARGO_PKG_VERSION").to_owned(),
                 has_world: settings.world.is_some(),
+                orders_world: (settings.world.as_ref()).is_some_and(|world| world.takes_orders()),
                 configures: settings.configures,
                 may_drive: settings.guests.may_drive(self.who.address.ip()),
             },
@@ -330,6 +346,13 @@ impl Teller {
                     Some(Came::Frame(frame)) => self.send(Message::Binary(frame.into())).await,
                     None => false,
                 },
+                Ok(()) = self.stages.changed() => {
+                    let now = self.stages.borrow_and_update().clone();
+                    match now {
+                        Some(stages) => self.say(News::Stages(stages)).await,
+                        None => true,
+                    }
+                }
                 Ok(()) = holder.changed() => {
                     let now = *holder.borrow_and_update();
                     self.say(News::control(now, self.who)).await

@@ -15,7 +15,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{Notify, mpsc, watch};
 
 /// Nothing here waits for a device.
-const NONBLOCK: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+pub const NONBLOCK: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+
+/// What a value is for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// The node.
+    pub path: String,
+    /// A number of its converters; None: its own value.
+    pub param: Option<String>,
+}
 
 /// What a browser wants moved and what was not carried out yet. Nothing in it is ever refused for want of room but new
 /// actuators: the newest value of each counts, and a rest or a stop drops what is older.
@@ -27,7 +36,7 @@ pub struct Moves {
 
 #[derive(Debug, Default)]
 struct Waiting {
-    values: Vec<(String, String)>,
+    values: Vec<(Target, String)>,
     rest: bool,
     stop: bool,
     is_over: bool,
@@ -42,16 +51,16 @@ impl Moves {
         done
     }
 
-    /// A value for an actuator.
+    /// A value for an actuator, or for a param.
     ///
     /// # Errors
-    /// So many other actuators wait already.
-    pub fn write(&self, path: String, value: String) -> Result<(), Error> {
+    /// So many others wait already.
+    pub fn write(&self, target: Target, value: String) -> Result<(), Error> {
         let fits = self.tell(|waiting| {
-            waiting.values.retain(|(other, _)| *other != path);
+            waiting.values.retain(|(other, _)| *other != target);
             let fits = waiting.values.len() < limits::ORDERS;
             if fits {
-                waiting.values.push((path, value));
+                waiting.values.push((target, value));
             }
             fits
         });
@@ -150,10 +159,13 @@ fn carry_out(tree: &Path, driven: &mut Driven, work: Waiting) -> Vec<News> {
     if work.rest {
         rest(tree, driven);
     }
-    for (path, value) in work.values {
-        let why = write(tree, driven, &path, &value).err();
+    for (target, value) in work.values {
+        let why = match &target.param {
+            Some(param) => set(tree, &target.path, param, &value).err(),
+            None => write(tree, driven, &target.path, &value).err(),
+        };
         said.push(News::Written {
-            path,
+            target,
             value,
             why: why.map(|why| why.words()),
         });
@@ -163,6 +175,14 @@ fn carry_out(tree: &Path, driven: &mut Driven, work: Waiting) -> Vec<News> {
 
 /// The file of an actuator's value.
 fn file(tree: &Path, path: &str) -> Result<PathBuf, Error> {
+    Ok(node(tree, path)?.join("value"))
+}
+
+/// The directory of a node.
+///
+/// # Errors
+/// The text leads elsewhere.
+pub fn node(tree: &Path, path: &str) -> Result<PathBuf, Error> {
     let is_plain = |part: Component| matches!(part, Component::Normal(_));
     let is_path = !path.is_empty()
         && path.len() <= limits::PATH_BYTES_MAX
@@ -173,7 +193,20 @@ fn file(tree: &Path, path: &str) -> Result<PathBuf, Error> {
             path.chars().take(limits::REPEATED_MAX).collect(),
         ));
     }
-    Ok(tree.join(path).join("value"))
+    Ok(tree.join(path))
+}
+
+/// A number of a node's converters. It stays when the browser is gone: nothing moves by it alone.
+fn set(tree: &Path, path: &str, param: &str, value: &str) -> Result<(), Error> {
+    let params = node(tree, path)?.join("params");
+    let file = node(&params, param)?;
+    let mut options = OpenOptions::new();
+    let wrote = options
+        .write(true)
+        .custom_flags(NONBLOCK)
+        .open(file)
+        .and_then(|mut opened| opened.write_all(format!("{}\n", value.trim_end()).as_bytes()));
+    wrote.map_err(|error| Error::File(format!("{path}/params/{param}"), error))
 }
 
 fn write(tree: &Path, driven: &mut Driven, path: &str, value: &str) -> Result<(), Error> {
@@ -240,12 +273,45 @@ mod tests {
         tree
     }
 
+    fn own(path: &str) -> Target {
+        Target {
+            path: path.to_owned(),
+            param: None,
+        }
+    }
+
+    #[test]
+    fn a_param_is_written_and_nothing_else_of_its_node() {
+        let tree = tree();
+        let node = tree.path().join("motors/M1");
+        fs::create_dir_all(node.join("params")).unwrap();
+        fs::write(node.join("params/gain"), "1\n").unwrap();
+        let moves = Moves::default();
+        let mut driven = Driven::new();
+        for param in ["gain", "none", "../value", "..", "", "/etc/passwd"] {
+            let param = Some(param.to_owned());
+            let path = "motors/M1".to_owned();
+            moves
+                .write(Target { path, param }, "2.5".to_owned())
+                .unwrap();
+        }
+        let said = carry_out(tree.path(), &mut driven, moves.take());
+        let is_done = |news: &News| matches!(news, News::Written { why: None, .. });
+        assert_eq!(
+            said.iter().map(is_done).collect::<Vec<_>>(),
+            [true, false, false, false, false, false]
+        );
+        assert_eq!(read(&node.join("params/gain")).unwrap(), "2.5\n");
+        assert_eq!(read(&node.join("value")).unwrap(), "0\n");
+        assert!(driven.is_empty());
+    }
+
     #[test]
     fn the_newest_value_of_each_actuator_is_written_and_a_stop_drops_those_before_it() {
         let tree = tree();
         let mut driven = Driven::new();
         let moves = Moves::default();
-        let write = |value: i32| moves.write("motors/M1".to_owned(), value.to_string());
+        let write = |value: i32| moves.write(own("motors/M1"), value.to_string());
         for value in 0..=300 {
             write(value).unwrap();
         }
@@ -259,9 +325,9 @@ mod tests {
         assert_eq!(read(&tree.path().join("motors/M1/value")).unwrap(), "20\n");
         assert_eq!(read(&tree.path().join("stop")).unwrap(), "1");
         for at in 0..limits::ORDERS {
-            moves.write(at.to_string(), "1".to_owned()).unwrap();
+            moves.write(own(&at.to_string()), "1".to_owned()).unwrap();
         }
-        assert!(moves.write("one more".to_owned(), "1".to_owned()).is_err());
+        assert!(moves.write(own("one more"), "1".to_owned()).is_err());
         moves.end();
         let last = moves.take();
         assert!(last.values.is_empty() && last.rest && last.is_over);
@@ -284,7 +350,7 @@ mod tests {
         ] {
             let said = {
                 let moves = Moves::default();
-                moves.write(path.to_owned(), "5".to_owned()).unwrap();
+                moves.write(own(path), "5".to_owned()).unwrap();
                 carry_out(tree.path(), &mut Driven::new(), moves.take())
             };
             assert!(

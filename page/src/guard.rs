@@ -3,7 +3,7 @@
 //! Owns the rules, on texts alone. `Host` keeps out a name that somebody has pointed at this machine (DNS rebinding), `Origin` and
 //! the cookie keep out other pages; the headers of each answer keep scripts of others out of this one.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv6Addr};
 
 /// The name of the cookie. It does not name the robot: a port is none for cookies, so the value has the port in it.
 const COOKIE: &str = "trik";
@@ -39,7 +39,19 @@ pub fn is_ours(value: &str, own_name: &str) -> bool {
     let name = name.trim_end_matches('.').to_ascii_lowercase();
     let own = own_name.to_ascii_lowercase();
     let is_own = !own.is_empty() && (name == own || name == format!("{own}.local"));
-    name == "localhost" || is_own || name.parse::<IpAddr>().is_ok()
+    name == "localhost" || is_own || is_address(&name)
+}
+
+/// Whether a name is an address; one that counts in one network alone may say which interface leads there (RFC 6874).
+fn is_address(name: &str) -> bool {
+    let fits = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
+    match name.split_once('%') {
+        Some((address, zone)) => {
+            let zone = zone.strip_prefix("25").unwrap_or(zone);
+            address.parse::<Ipv6Addr>().is_ok() && !zone.is_empty() && zone.chars().all(fits)
+        }
+        None => name.parse::<IpAddr>().is_ok(),
+    }
 }
 
 /// Whether a request from a page with this `Origin` is one of the page that this host gave. A request without one is of no page.
@@ -80,6 +92,8 @@ mod tests {
             "127.0.0.1",
             "[::1]:8000",
             "[fe80::1]",
+            "[fe80::1%25eth0]:8000",
+            "[fe80::1%wlan-0.5]",
             "localhost:8000",
             "LOCALHOST",
             "robot:8000",
@@ -96,6 +110,11 @@ mod tests {
             "robot.evil.example",
             "localhost.evil.example",
             "robot.local.evil",
+            "[fe80::1%25]",
+            "[fe80::1%]:8000",
+            "[fe80::1%evil.example/x]",
+            "127.0.0.1%25eth0",
+            "evil.example%25eth0",
         ] {
             assert!(!is_ours(bad, "robot"), "{bad}");
         }

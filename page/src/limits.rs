@@ -93,6 +93,12 @@ pub const MISTAKES_MAX: usize = 5;
 pub const CONFIGURATION_BYTES_MAX: usize = 1 << 20;
 /// Bytes of the `status` of a tree: a line about its configuration and one for each node.
 pub const STATUS_BYTES_MAX: usize = 1 << 20;
+/// Bytes of the `stages` of a node: as many tuples as a chain may have converters, and one more, as the filesystem cuts them.
+pub const STAGES_BYTES_MAX: usize = 64 << 10;
+/// Params of a node that are shown, as many as it can have with its attributes.
+pub const PARAMS_MAX: usize = 256;
+/// Threads for files that look into nodes at once.
+pub const LOOKS_MAX: usize = 1;
 /// Rows of the plain table.
 pub const ROWS_MAX: usize = 500;
 /// Letters of one of its cells.

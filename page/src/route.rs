@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::files::File;
 use crate::gate::{enter, text};
 use crate::shared::Shared;
-use crate::{configuration, files, limits, plain, store};
+use crate::{configuration, files, inside, limits, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, State, WebSocketUpgrade};
 use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE};
@@ -35,6 +35,7 @@ pub const DATA: &[&str] = &[
     "diagram",
     "changed",
     "configuration",
+    "converters",
 ];
 
 /// All addresses.
@@ -46,6 +47,7 @@ pub fn router(shared: Arc<Shared>) -> Router {
         .route("/diagram/{*name}", get(diagram))
         .route("/changed/{*name}", get(changed))
         .route("/configuration", get(configured))
+        .route("/converters", get(converters))
         .route("/plain", get(table))
         .fallback(file)
         .layer(from_fn_with_state(shared.gate.clone(), enter))
@@ -186,6 +188,14 @@ async fn configured(
     let locale = locale(&query);
     let seen = shared.clone();
     let work = move || configuration::read(&seen.settings.tree);
+    with_files(&shared, locale, work, json).await
+}
+
+async fn converters(State(shared): State<Arc<Shared>>) -> Response {
+    // It says nothing in words.
+    let locale = Locale::English;
+    let seen = shared.clone();
+    let work = move || Ok(inside::list(&seen.settings.tree));
     with_files(&shared, locale, work, json).await
 }
 

@@ -40,6 +40,7 @@ impl Page {
                 browsers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
                 uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
                 large: Arc::new(Semaphore::new(limits::LARGE_MAX)),
+                looks: Arc::new(Semaphore::new(limits::LOOKS_MAX)),
                 number: AtomicUsize::new(0),
             })))
         })?;

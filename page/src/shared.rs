@@ -46,6 +46,8 @@ pub struct Shared {
     pub uploads: Arc<Semaphore>,
     /// Large things that are read or made at once: they leave threads for what moves.
     pub large: Arc<Semaphore>,
+    /// Looks into nodes at once: a device may make them wait.
+    pub looks: Arc<Semaphore>,
     /// Of the newest browser.
     pub number: AtomicUsize,
 }

@@ -3,7 +3,9 @@
 //! Owns their forms; `page/app/src/link/words.ts` has the other end. Pure.
 
 use crate::control::Browser;
+use crate::drive::Target;
 use crate::error::Error;
+use crate::inside::Stages;
 use crate::limits;
 use lang_text::problem::{Locale, Words};
 use serde_json::{Map, Value};
@@ -11,8 +13,10 @@ use serde_json::{Map, Value};
 /// What a browser wants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// A value for an actuator, as text.
-    Write(String, String),
+    /// A value for an actuator, or for a number of a node's converters, as text.
+    Write(Target, String),
+    /// To see the inside of a node, or of none any more.
+    Inspect(Option<String>),
     /// An order to the world, in words.
     World(String),
     /// An order to the recording that is played, in words.
@@ -47,10 +51,11 @@ impl Order {
         let value: Value = serde_json::from_str(text).map_err(|_| why())?;
         let text = |name: &str| value.get(name).and_then(Value::as_str).map(str::to_owned);
         let order = match text("do").ok_or_else(why)?.as_str() {
-            "write" => Self::Write(
-                text("path").ok_or_else(why)?,
-                text("value").ok_or_else(why)?,
-            ),
+            "write" => {
+                let (path, param) = (text("path").ok_or_else(why)?, text("param"));
+                Self::Write(Target { path, param }, text("value").ok_or_else(why)?)
+            }
+            "inspect" => Self::Inspect(text("path")),
             "world" => Self::World(text("order").ok_or_else(why)?),
             "playback" => Self::Playback(text("order").ok_or_else(why)?),
             "configure" => Self::Configure(text("text").ok_or_else(why)?),
@@ -86,6 +91,8 @@ pub enum News {
         version: String,
         /// There is a world around the robot.
         has_world: bool,
+        /// It takes orders.
+        orders_world: bool,
         /// This computer may do things.
         may_drive: bool,
         /// The configuration may be replaced from here.
@@ -102,13 +109,15 @@ pub enum News {
     Robot(Option<String>),
     /// A value was written, or not.
     Written {
-        /// The node.
-        path: String,
+        /// Where.
+        target: Target,
         /// What should have been written.
         value: String,
         /// Why it was not.
         why: Option<Words>,
     },
+    /// The inside of the node that this browser wants to see.
+    Stages(Stages),
     /// The configuration was replaced, or not and why.
     Configured(Option<Words>),
     /// A program has another name; None: it is gone.
@@ -155,6 +164,7 @@ impl News {
                 name,
                 version,
                 has_world,
+                orders_world,
                 may_drive,
                 configures,
             } => object(
@@ -163,6 +173,7 @@ impl News {
                     ("name", name.as_str().into()),
                     ("version", version.as_str().into()),
                     ("world", (*has_world).into()),
+                    ("orders", (*orders_world).into()),
                     ("drives", (*may_drive).into()),
                     ("configures", (*configures).into()),
                 ],
@@ -175,12 +186,21 @@ impl News {
                 "robot",
                 vec![("there", why.is_none().into()), ("why", why.clone().into())],
             ),
-            Self::Written { path, value, why } => object(
+            Self::Written { target, value, why } => object(
                 "written",
                 vec![
-                    ("path", path.as_str().into()),
+                    ("path", target.path.as_str().into()),
+                    ("param", target.param.clone().into()),
                     ("value", value.as_str().into()),
                     ("why", said(why)),
+                ],
+            ),
+            Self::Stages(Stages { path, at, tuples }) => object(
+                "stages",
+                vec![
+                    ("path", path.as_str().into()),
+                    ("at_s", at.as_secs_f64().into()),
+                    ("tuples", tuples.clone().into()),
                 ],
             ),
             Self::Configured(why) => object("configured", vec![("why", said(why))]),
@@ -237,11 +257,27 @@ mod tests {
 
     #[test]
     fn orders_are_read_and_rubbish_is_none() {
-        let write = Order::Write("motors/M1".to_owned(), "30".to_owned());
-        assert_eq!(
-            Order::parse(r#"{"do":"write","path":"motors/M1","value":"30"}"#).unwrap(),
-            write
-        );
+        let write = |param: Option<&str>| {
+            let (path, param) = ("motors/M1".to_owned(), param.map(str::to_owned));
+            Order::Write(Target { path, param }, "30".to_owned())
+        };
+        for (text, order) in [
+            (
+                r#"{"do":"write","path":"motors/M1","value":"30"}"#,
+                write(None),
+            ),
+            (
+                r#"{"do":"write","path":"motors/M1","param":"gain","value":"30"}"#,
+                write(Some("gain")),
+            ),
+            (
+                r#"{"do":"inspect","path":"m"}"#,
+                Order::Inspect(Some("m".to_owned())),
+            ),
+            (r#"{"do":"inspect","path":null}"#, Order::Inspect(None)),
+        ] {
+            assert_eq!(Order::parse(text).unwrap(), order);
+        }
         assert_eq!(
             Order::parse(r#"{"do":"look","world":true}"#).unwrap(),
             Order::Look(true)
@@ -311,6 +347,7 @@ mod tests {
                 name: "a\"b".to_owned(),
                 version: "1".to_owned(),
                 has_world: true,
+                orders_world: false,
                 may_drive: false,
                 configures: false,
             },
@@ -319,8 +356,16 @@ mod tests {
                 who: None,
             },
             News::Robot(Some("gone".to_owned())),
-            News::Written {
+            News::Stages(Stages {
                 path: "m".to_owned(),
+                at: std::time::Duration::from_millis(1500),
+                tuples: vec!["00".to_owned()],
+            }),
+            News::Written {
+                target: Target {
+                    path: "m".to_owned(),
+                    param: Some("gain".to_owned()),
+                },
                 value: "1".to_owned(),
                 why: None,
             },

@@ -66,7 +66,7 @@ fn busy(what: Busy) -> &'static str {
 }
 
 /// What the system says, by its own words; others stay as they are.
-const SYSTEM: [(&str, &str); 12] = [
+const SYSTEM: [(&str, &str); 13] = [
     ("No such file or directory", "такого файла нет"),
     ("Permission denied", "нет прав"),
     ("Operation not permitted", "это не разрешено"),
@@ -79,6 +79,7 @@ const SYSTEM: [(&str, &str); 12] = [
         "значение вне допустимых пределов",
     ),
     ("Input/output error", "устройство отказало"),
+    ("Remote I/O error", "на шине никто не отозвался"),
     ("No space left on device", "на диске нет места"),
     ("Read-only file system", "диск только для чтения"),
     ("Address already in use", "адрес уже занят"),

@@ -13,6 +13,11 @@ pub trait World: Send + Sync {
     /// What moves, as JSON, at this moment.
     fn state(&self) -> String;
 
+    /// It does what people order. One that was recorded does not.
+    fn takes_orders(&self) -> bool {
+        true
+    }
+
     /// Does what a person orders, in words. Words that are long may take time.
     ///
     /// # Errors

@@ -368,6 +368,8 @@ impl Values {
         for entry in batch {
             match entry {
                 Entry::Sample(known, ..) => drop(self.0.insert(known.number)),
+                // Somebody has put another configuration in force.
+                Entry::Fault(known, _, libc::ESTALE, _) => drop(self.0.remove(&known.number)),
                 Entry::Fault(known, ..) => have_gone |= self.0.remove(&known.number),
                 Entry::Node(_) | Entry::Line(..) | Entry::Attachment(..) | Entry::Facts(..) => {}
             }

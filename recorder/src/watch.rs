@@ -406,6 +406,7 @@ impl Watch {
                 self.text = Some(entry.clone());
                 out.push(entry);
                 // It may have other nodes.
+                self.part(out);
                 self.find(out);
             }
         }
@@ -431,6 +432,19 @@ impl Watch {
             *watched = fresh;
         }
         self.find_raws(out);
+    }
+
+    /// Nodes that have left the tree say so once: nothing else would tell a reader that their last value is none any more.
+    fn part(&mut self, out: &mut Vec<Entry>) {
+        let root = &self.root;
+        self.watched.retain(|one| {
+            let is_there = root.join(&one.known.node.path).join("bin_data").exists();
+            if !is_there {
+                let why = "the node has left the tree".into();
+                out.push(Entry::Fault(one.known.clone(), now_ns(), libc::ESTALE, why));
+            }
+            is_there
+        });
     }
 
     fn facts(&self) -> BTreeMap<String, String> {

@@ -115,6 +115,8 @@ mod mount {
     mod rest;
     /// Samples in shared memory.
     mod sample_bus;
+    /// Bytes on their way through converters.
+    mod stages;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

@@ -46,6 +46,8 @@ pub const BASE_BYTES_MAX: usize = 64;
 pub const RESTARTS_MAX: usize = 5;
 /// Bytes of the name of a robot (RFC 1035: names in the network have at most 253).
 pub const HOST_BYTES_MAX: usize = 253;
+/// Bytes of the name of a network interface, as Linux has it.
+pub const ZONE_BYTES_MAX: usize = 15;
 /// Addresses of one name that are tried.
 pub const ADDRESSES_MAX: usize = 8;
 /// Robots that are talked to at once.
@@ -258,6 +260,10 @@ pub const REPLAY_ORDERS_MAX: usize = 64;
 pub const REPLAY_NEWS_MAX: usize = 64;
 /// Changes of one actuator that are compared.
 pub const REPLAY_CHANGES_MAX: usize = 100_000;
+/// Bytes of one text about a recorded world: what stands still in it, as the recorder takes it.
+pub const REPLAY_WORLD_BYTES_MAX: usize = 256 << 10;
+/// A recorded world is read on until a moment that is so near; to one further on it is sought.
+pub const REPLAY_WORLD_NEAR_NS: u64 = 10_000_000_000;
 /// Seconds of a moment of a recording: 30 years.
 pub(crate) const RECORDING_SECONDS_MAX: f64 = 1e9;
 /// How often a long work says how far it is.

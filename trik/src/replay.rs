@@ -14,6 +14,7 @@ mod player;
 mod recording;
 mod tree;
 mod words;
+mod world;
 
 use crate::error::Error;
 use crate::output::{Output, standard};
@@ -25,7 +26,7 @@ use crate::up::page::{self, Served};
 use crate::up::session::{Beneath, Over, Session, signals};
 use crate::up::trikd::Trikd;
 use ::page::playback::{Playback, State};
-use ::page::world::Refused;
+use ::page::world::{Refused, World};
 use anew::{compare, tape};
 use args::ReplayArgs;
 use file::FileRecording;
@@ -36,6 +37,7 @@ use recording::Recording;
 use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
+use world::RecordedWorld;
 
 /// The name of what another configuration makes of a recording.
 const ANEW: &str = "anew.mcap";
@@ -162,8 +164,8 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         place.mountpoint.clone().into(),
     ];
     let shown = page::Beneath {
+        world: world_of(&args.file, &player)?,
         playback: Some(player.clone()),
-        ..page::Beneath::default()
     };
     let page = Served::start(
         &args.serving,
@@ -181,6 +183,13 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         Some(why) => end.and(Err(Error::Refused(why))),
         None => end.map(|()| state.differences.is_empty() || !args.exit),
     }
+}
+
+/// The world of the recording, where the player is.
+fn world_of(file: &Path, player: &Arc<Player>) -> Result<Option<Arc<dyn World>>, Error> {
+    let player = player.clone();
+    let world = RecordedWorld::open(file, move || player.position())?;
+    Ok(world.map(|world| Arc::new(world) as Arc<dyn World>))
 }
 
 /// An option of trikfs in one word, so that a path that begins with a dash stays a value.

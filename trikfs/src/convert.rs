@@ -279,6 +279,7 @@ impl Recipe {
                 code,
                 input_size,
                 between: vec![0; output_size],
+                has_given: false,
             });
         }
         Ok(Chain::Stages(stages))
@@ -330,6 +331,8 @@ struct Stage {
     input_size: usize,
     /// Output of this stage on its way to the next one.
     between: Vec<u8>,
+    /// It gave one for the last tuple that came to it.
+    has_given: bool,
 }
 
 enum Code {
@@ -358,6 +361,19 @@ impl Pipeline {
         };
         chain.convert(self.vm.as_mut(), input, output)
     }
+
+    /// What each stage but the last has made of the last tuple that was read, as far as it came. True: the last one has given too.
+    pub fn tell_stages(&self, tell: &mut dyn FnMut(&[u8])) -> bool {
+        let Chain::Stages(stages) = &self.read else {
+            return true;
+        };
+        let given = stages.iter().take_while(|stage| stage.has_given).count();
+        let inner = stages.len() - 1;
+        for stage in &stages[..given.min(inner)] {
+            tell(&stage.between);
+        }
+        given > inner
+    }
 }
 
 impl Chain {
@@ -374,7 +390,11 @@ impl Chain {
                 }
             }
             Self::Stages(stages) => match stages.as_mut_slice() {
-                [only] => only.convert_many(vm, input, output),
+                [only] => {
+                    let batch = only.convert_many(vm, input, output);
+                    only.has_given = batch.produced > 0;
+                    batch
+                }
                 stages => convert_through(stages, vm, input, output),
             },
         }
@@ -431,6 +451,7 @@ fn one_through(
                 .code
                 .convert(vm.as_deref_mut(), from, &mut stage.between)
         };
+        stage.has_given = matches!(outcome, Ok(Conversion::Produced));
         let outcome = outcome.map_err(|error| in_stage(error, index, last))?;
         if outcome == Conversion::Consumed {
             return Ok(Conversion::Consumed);

@@ -13,6 +13,7 @@ pub mod log;
 pub mod owner;
 pub mod ownership;
 pub mod param;
+pub mod stages;
 pub mod value;
 
 use crate::errno::Error;

@@ -18,6 +18,7 @@ use crate::files::devices::DevicesFile;
 use crate::files::log::LogFile;
 use crate::files::owner::OwnerFile;
 use crate::files::param::ParamFile;
+use crate::files::stages::StagesFile;
 use crate::files::value::ValueFile;
 use crate::files::{OpenFile, READY};
 use crate::limits;
@@ -240,6 +241,8 @@ impl Fs {
             Kind::Param(node, name) => {
                 Ok((Arc::new(ParamFile::new(node, name)), Access::Direct, false))
             }
+            Kind::Stages(_) if write => Err(Error::AccessDenied),
+            Kind::Stages(node) => Ok((Arc::new(StagesFile::open(node)?), Access::Direct, false)),
             Kind::Status | Kind::Units(_) | Kind::Format(_) | Kind::Fault(_) | Kind::Stats(_) => {
                 Err(Error::Internal("a text without a text".to_owned()))
             }
@@ -290,6 +293,7 @@ impl Fs {
             | Kind::Value(..)
             | Kind::Period(_)
             | Kind::Param(..)
+            | Kind::Stages(_)
             | Kind::Owner(_) => return None,
         })
     }
@@ -304,10 +308,28 @@ impl Fs {
     }
 }
 
+impl Fs {
+    /// The range of a param, as its attribute has it: a side without a limit is `-`.
+    fn range_of(&self, ino: u64) -> Option<String> {
+        let tree = self.forest.tree();
+        let Kind::Param(node, name) = &tree.entry(ino).ok()?.kind else {
+            return None;
+        };
+        let (min, max) = node.description.param_ranges.get(name.as_ref())?;
+        let side = |number: f64| match number.abs() == f64::MAX {
+            true => "-".to_owned(),
+            false => number.to_string(),
+        };
+        Some(format!("{} {}", side(*min), side(*max)))
+    }
+}
+
 /// The extended attribute with the time of the newest sample.
 const TIME_ATTRIBUTE: &[u8] = b"user.trik.time_ns";
 /// That with what brings an actuator to rest.
 const REST_ATTRIBUTE: &[u8] = b"user.trik.rest";
+/// That with the least and the greatest number that a param takes.
+const RANGE_ATTRIBUTE: &[u8] = b"user.trik.range";
 
 impl Operations for Fs {
     fn start(&self, kernel: Arc<dyn Kernel>) {
@@ -410,6 +432,10 @@ impl Operations for Fs {
             let numbers: Vec<String> = rest.iter().map(f64::to_string).collect();
             return Ok(numbers.join(" ").into_bytes());
         }
+        if name == RANGE_ATTRIBUTE {
+            let range = self.range_of(ino).ok_or(Error::NoAttribute)?;
+            return Ok(range.into_bytes());
+        }
         if name != TIME_ATTRIBUTE {
             return Err(Error::NoAttribute);
         }
@@ -427,7 +453,11 @@ impl Operations for Fs {
         if let Ok(node) = self.node_of(ino) {
             let has_sample = node.sampling.newest.stamp().is_some();
             let has_rest = node.description.rest.is_some();
-            for (name, is_there) in [(TIME_ATTRIBUTE, has_sample), (REST_ATTRIBUTE, has_rest)] {
+            for (name, is_there) in [
+                (TIME_ATTRIBUTE, has_sample),
+                (REST_ATTRIBUTE, has_rest),
+                (RANGE_ATTRIBUTE, self.range_of(ino).is_some()),
+            ] {
                 if is_there {
                     names.extend_from_slice(name);
                     names.push(0);

@@ -52,6 +52,8 @@ pub const OPEN_FILE_BYTES: usize = 1024;
 pub const NUMBER_TEXT_BYTES: usize = 32;
 /// Bytes that `status` has for each node, about, which its open file keeps.
 pub const STATUS_LINE_BYTES: usize = 64;
+/// Bytes of a tuple that `stages` shows.
+pub const STAGE_BYTES_MAX: usize = 1024;
 /// Bytes of memory of the smallest board.
 pub const MACHINE_BYTES_LEAST: u64 = 192 << 20;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.

@@ -236,6 +236,25 @@ impl Newest {
         Ok(Some(events))
     }
 
+    /// Tells the tuples of the newest sample on their way: that of the source, then what each converter has made of it, as far
+    /// as it came. Nothing is copied for this when a sample is taken.
+    pub fn tell_stages(&self, tell: &mut dyn FnMut(&[u8])) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        // Held until the end: no other sample comes in between.
+        let work = lock_patiently(&self.work);
+        let is_through = match &work.source {
+            Source::Closed => false,
+            Source::State(state) => state.tell_stages(tell),
+            Source::Stream(reader) => reader.tell_stages(tell),
+        };
+        let mut tuple = Vec::new();
+        if is_through && let Ok(Some(_)) = self.latch.get(too_old(&node), &mut tuple) {
+            tell(&tuple);
+        }
+    }
+
     /// The latch itself.
     pub fn latch(&self) -> &Latch {
         &self.latch

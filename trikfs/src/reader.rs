@@ -44,6 +44,8 @@ struct Inner {
     has_heard: bool,
     raw: Vec<u8>,
     raw_len: usize,
+    /// One tuple was converted, and it is still at the beginning of `raw`.
+    is_whole: bool,
     rest: Vec<u8>,
     rest_at: usize,
     /// What the next read gets when `rest` is used up.
@@ -73,6 +75,7 @@ impl Reader {
             has_heard: false,
             raw: Vec::new(),
             raw_len: 0,
+            is_whole: false,
             rest: Vec::new(),
             rest_at: 0,
             pending: None,
@@ -173,6 +176,16 @@ impl Reader {
         }
     }
 
+    /// The last tuple of the source and what stages have made of it, if it is still here. True: the last stage has given too.
+    pub fn tell_stages(&self, tell: &mut dyn FnMut(&[u8])) -> bool {
+        let inner = lock(&self.inner);
+        if !inner.is_whole {
+            return false;
+        }
+        tell(&inner.raw[..self.node.description.input_tuple_size]);
+        lock(&self.pipeline).tell_stages(tell)
+    }
+
     /// Makes sure that `on_ready` is called for what arrives from now on. After the first time the caller must
     /// look once more, because something may have arrived before; then this returns true.
     pub fn arm(&self) -> Result<bool, Error> {
@@ -264,6 +277,7 @@ impl Reader {
             match got {
                 Ok(Got::Bytes(n)) => {
                     inner.raw_len += n;
+                    inner.is_whole = false;
                     inner.has_heard = true;
                 }
                 Ok(Got::End) => {
@@ -277,6 +291,7 @@ impl Reader {
                 Ok(Got::Nothing) => return Ok(Got::Nothing),
                 Err(error) => {
                     inner.raw_len = 0;
+                    inner.is_whole = false;
                     self.node.report(&error);
                     if matches!(inner.origin, Origin::Own(_)) && error.is_gone() {
                         inner.watch = None;
@@ -337,6 +352,7 @@ impl Reader {
             .raw
             .copy_within(consumed * input_size..inner.raw_len, 0);
         inner.raw_len -= consumed * input_size;
+        inner.is_whole = consumed == 1 && inner.raw_len == 0;
         match fault {
             None if made == 0 => Step::Consumed,
             None => Step::Output(made),

@@ -18,6 +18,8 @@ pub struct StateReader {
     /// None: it is opened for the first sample.
     pipeline: Option<Arc<Mutex<Pipeline>>>,
     raw: Vec<u8>,
+    /// The last sample gave a whole tuple of the source, which is in `raw`.
+    is_whole: bool,
     /// What is left of the converted tuple that the last read ended in.
     rest: Vec<u8>,
     /// The offset after the last read, and the tuple of the source that comes next there.
@@ -39,6 +41,7 @@ impl StateReader {
             device,
             pipeline,
             raw: Vec::new(),
+            is_whole: false,
             rest: Vec::new(),
             next_at: 0,
             next_tuple: 0,
@@ -63,6 +66,7 @@ impl StateReader {
         }
         self.raw.resize(self.node.description.input_tuple_size, 0);
         for _ in 0..limits::CONSUMED_TUPLES_MAX {
+            self.is_whole = false;
             match self.device.whole_tuple(&mut self.raw) {
                 // The clock asks again soon, and reads wait for that.
                 Err(Error::WouldBlock) if self.node.sampling.newest.is_in_background() => {
@@ -70,6 +74,7 @@ impl StateReader {
                 }
                 sampled => sampled.map_err(|error| self.failed(error))?,
             }
+            self.is_whole = true;
             let pipeline = self.pipeline()?;
             let mut pipeline = lock(&pipeline);
             let batch = self
@@ -87,6 +92,17 @@ impl StateReader {
             }
         }
         Ok(false)
+    }
+
+    /// The last tuple of the source and what stages have made of it, if it came whole. True: the last stage has given too.
+    pub fn tell_stages(&self, tell: &mut dyn FnMut(&[u8])) -> bool {
+        match &self.pipeline {
+            Some(pipeline) if self.is_whole => {
+                tell(&self.raw);
+                lock(pipeline).tell_stages(tell)
+            }
+            Some(_) | None => false,
+        }
     }
 
     fn pipeline(&mut self) -> Result<Arc<Mutex<Pipeline>>, Error> {

@@ -49,6 +49,8 @@ pub enum Kind {
     Fault(Arc<Node>),
     /// `stats`
     Stats(Arc<Node>),
+    /// `stages`
+    Stages(Arc<Node>),
     /// `owner`
     Owner(Arc<Node>),
 }
@@ -271,6 +273,7 @@ impl Tree {
             }
             Kind::Owner(node) => attr.mode = 0o444 | node.driving.lease.write_mode(),
             Kind::Param(..) => attr.mode = 0o644,
+            Kind::Stages(node) => attr.mode = node.description.mode & 0o444,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
                 attr.size = node.description.output_tuple_size as u64;
@@ -337,6 +340,7 @@ impl Kind {
             | Self::Param(node, _)
             | Self::Fault(node)
             | Self::Stats(node)
+            | Self::Stages(node)
             | Self::Owner(node) => Some(node),
         }
     }
@@ -363,6 +367,7 @@ impl Kind {
             | Self::Period(_)
             | Self::Fault(_)
             | Self::Stats(_)
+            | Self::Stages(_)
             | Self::Owner(_) => std::mem::discriminant(self) == std::mem::discriminant(other),
         };
         same_node && same_view
@@ -454,6 +459,9 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        if !node.description.converter.is_empty() {
+            self.add(at, "stages", Kind::Stages(node.clone()));
+        }
         if self.has_owner(node) {
             self.add(at, "owner", Kind::Owner(node.clone()));
         }

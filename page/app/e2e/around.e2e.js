@@ -97,15 +97,64 @@ test('the world is as it was at any moment, with the way until then', async () =
   await page.context().close();
 }, 120_000);
 
-test('a recording of trik record has the world too, and over its replay the place is that of its wheels', async () => {
-  const file = join(there.robot.home, 'run.mcap');
-  const { begun, recorded } = there.robot.record(file, 8);
+/** A recording that was paused stands still. */
+async function stands(page) {
+  await button(page, 'Play').waitFor();
+  await eventually('it stands', async () => {
+    const at = (await robotAt(page))?.count;
+    await page.waitForTimeout(300);
+    return at === (await robotAt(page))?.count;
+  });
+}
+
+/** Drives ahead while it is recorded, from back from what it has touched, and not from where the recording ends. */
+async function driven(name, hasWorld) {
+  const file = join(there.robot.home, name);
+  const { begun, recorded } = there.robot.record(file, 8, hasWorld);
   await begun;
-  // Back from what it has touched, and not from where the recording ends.
   const far = () => Number(there.robot.read('encoders/E3/value'));
   const before = far();
   await drive('a way', () => far() < before - 800, -60);
   await recorded;
+  return file;
+}
+
+test('over a replay the world is the recorded one, at the moment of the player', async () => {
+  const file = await driven('world.mcap', true);
+  const live = await there.look.open(`${there.robot.url}#world`);
+  const end = await said(live);
+  await live.context().close();
+  const player = await Robot.replay(file);
+  try {
+    const page = await there.look.open(`${player.url}#world`);
+    await eventually('the robot', () => robotAt(page));
+    assert.equal(await page.getByText('a square of the grid').count(), 0, 'it is a world');
+    const first = await said(page);
+    assert.ok(first > end + 0.25, `${first} ${end}`);
+    await button(page, 'Play').click();
+    await eventually('it drives', async () => (await said(page)) < first - 0.2);
+    await button(page, 'Pause the recording').click();
+    await stands(page);
+    await hasTrail(page);
+    await slider(page).focus();
+    await page.keyboard.press('End');
+    await until('where it was at the end', () => said(page), end);
+    await page.keyboard.press('Home');
+    await until('where it began', () => said(page), first);
+    // Nothing that was recorded is ordered.
+    assert.equal(await button(page, 'Reset').count(), 0);
+    await page.getByRole('application').focus();
+    await page.keyboard.press('Shift+ArrowRight');
+    await isUsable(page, 'world-replay');
+    assert.equal(await said(page), first);
+    await page.context().close();
+  } finally {
+    await player.end();
+  }
+}, 120_000);
+
+test('over the replay of a recording without a world the place is that of the wheels', async () => {
+  const file = await driven('run.mcap', false);
   const player = await Robot.replay(file);
   try {
     const page = await there.look.open(`${player.url}#world`);
@@ -116,19 +165,14 @@ test('a recording of trik record has the world too, and over its replay the plac
     await button(page, 'Play').click();
     await eventually('it drives', async () => (await said(page)) < first - 0.28);
     await button(page, 'Pause the recording').click();
-    await button(page, 'Play').waitFor();
-    await eventually('it stands', async () => {
-      const at = (await robotAt(page))?.count;
-      await page.waitForTimeout(300);
-      return at === (await robotAt(page))?.count;
-    });
+    await stands(page);
     await hasTrail(page);
     await isUsable(page, 'world-ground');
     await page.getByRole('application').focus();
     await page.keyboard.press('0');
     const asked = page.waitForEvent('filechooser');
     await button(page, 'Open a recording').click();
-    await (await asked).setFiles(file);
+    await (await asked).setFiles(join(there.robot.home, 'world.mcap'));
     await slider(page).waitFor();
     await page.keyboard.press('End');
     await until('it is a world', () => page.getByText('a square of the grid').count(), 0);

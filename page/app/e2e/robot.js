@@ -75,10 +75,11 @@ export class Robot {
    * Records everything for some seconds: begun once the recorder looks, recorded once the file is whole.
    * @param {string} file
    * @param {number} seconds
+   * @param {boolean} hasWorld the world around the robot is recorded too
    */
-  record(file, seconds) {
+  record(file, seconds, hasWorld = true) {
     // There it finds the world around the robot.
-    const env = { ...process.env, XDG_RUNTIME_DIR: this.home };
+    const env = { ...process.env, XDG_RUNTIME_DIR: hasWorld ? this.home : join(this.home, 'nothing') };
     const child = spawn(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree], { env });
     let said = '';
     const begun = new Promise((done) => {

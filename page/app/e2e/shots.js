@@ -91,7 +91,7 @@ try {
   await shot('configuration');
   // Over a replay the place is that of the wheels, as on a real robot.
   const run = join(robot.home, 'run.mcap');
-  const { begun, recorded } = robot.record(run, 8);
+  const { begun, recorded } = robot.record(run, 8, false);
   await begun;
   robot.write('motors/M3/value', 45);
   robot.write('motors/M4/value', 60);

@@ -42,6 +42,10 @@ export const PROGRAM_BYTES_MAX = (16 << 20) - 1024;
 export const EDITED_BYTES_MAX = 128 << 10;
 /** Bytes of a configuration that the filesystem takes. */
 export const CONFIGURATION_BYTES_MAX = 1 << 20;
+/** Converters of a chain, as the filesystem takes them. */
+export const CHAIN_MAX = 16;
+/** Turned numbers of converters that can be taken back. */
+export const TURNS_MAX = 200;
 /** Megabytes of a file with a world. The server takes 6 MiB of an order, and Base64 has four letters for three bytes. */
 export const WORLD_FILE_MB_MAX = 4;
 /** Nodes that are sampled while they are shown: as many patterns as the control port takes. */
@@ -83,6 +87,10 @@ export const SCENES_MAX = 100;
 export const SCENE_ITEMS_MAX = 20_000;
 /** Things that move in it, and rays of a lidar. */
 export const THINGS_MAX = 1000;
+/** Points of ways in one recorded world that are kept. */
+export const PAST_POINTS_MAX = 1 << 20;
+/** Lines before a moment that are tried if they say nothing of a world. */
+export const PLACES_TRIED_MAX = 100;
 /** Robots of it, and wheels and sensors of each. */
 export const SHAPE_PARTS_MAX = 100;
 /** A question stays for so long at most: a timer of the browser has 31 bits of milliseconds. */

@@ -51,7 +51,7 @@ fn an_attribute_may_not_take_the_name_of_a_file() {
     };
     for name in [
         "device", "value", "value0", "value12", "bin_data", "units", "format", "poll_ms", "fault",
-        "stats",
+        "stages", "stats",
     ] {
         let config = format!(
             "trikfs = {{ n = {{ src = '/dev/zero', input_tuple_size = 1, attributes = {{ {name} = {{ src = '/dev/zero', input_tuple_size = 1 }} }} }} }}"

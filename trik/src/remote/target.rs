@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::place::{self, Running};
 use std::fmt;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs};
 use std::path::{Path, PathBuf};
 
 /// The port on which robots take programs.
@@ -38,8 +38,15 @@ impl fmt::Display for Target {
 
 impl From<SocketAddr> for Target {
     fn from(address: SocketAddr) -> Self {
+        let host = match address {
+            // Without its interface such an address leads nowhere.
+            SocketAddr::V6(six) if six.scope_id() != 0 => {
+                format!("{}%{}", six.ip(), six.scope_id())
+            }
+            SocketAddr::V4(_) | SocketAddr::V6(_) => address.ip().to_string(),
+        };
         Self {
-            host: address.ip().to_string(),
+            host,
             port: address.port(),
         }
     }
@@ -50,7 +57,8 @@ pub(crate) fn is_path(text: &str) -> bool {
     text.contains('/')
 }
 
-/// `HOST`, `HOST:PORT`, `[IPv6]:PORT`, a plain IPv6 address, or the mountpoint of a virtual robot.
+/// `HOST`, `HOST:PORT`, `[IPv6]:PORT`, a plain IPv6 address, or the mountpoint of a virtual robot. `%INTERFACE` after an IPv6 address
+/// says where the network is in which it counts.
 ///
 /// # Errors
 /// It is none of these, or no virtual robot that takes programs is mounted there.
@@ -58,21 +66,15 @@ pub(crate) fn target(text: &str) -> Result<Target, Error> {
     if is_path(text) {
         return mounted(&local()?, Path::new(text));
     }
+    if let Some(six) = six(text) {
+        return six;
+    }
     if let Ok(address) = text.parse::<SocketAddr>() {
         return Ok(address.into());
     }
-    if let Ok(address) = text.parse::<IpAddr>() {
-        return Ok(SocketAddr::new(address, PORT).into());
-    }
     let (host, port) = match text.split_once(':') {
         None => (text, PORT),
-        Some((host, port)) => match port.parse() {
-            Ok(port) if port > 0 => (host, port),
-            _ => {
-                let why = format!("'{port}' is no port: a number from 1 to 65535");
-                return Err(Error::Refused(why));
-            }
-        },
+        Some((host, text)) => (host, port(text)?),
     };
     let fits = |c: char| c.is_alphanumeric() || "-._".contains(c);
     if host.is_empty() || host.len() > limits::HOST_BYTES_MAX || !host.chars().all(fits) {
@@ -83,6 +85,48 @@ pub(crate) fn target(text: &str) -> Result<Target, Error> {
         host: host.to_owned(),
         port,
     })
+}
+
+fn port(text: &str) -> Result<u16, Error> {
+    let port = text.parse().ok().filter(|port| *port > 0);
+    port.ok_or_else(|| Error::Refused(format!("'{text}' is no port: a number from 1 to 65535")))
+}
+
+/// An IPv6 address with its interface and port; None if it is none.
+fn six(text: &str) -> Option<Result<Target, Error>> {
+    let (inside, tail) = match text.strip_prefix('[') {
+        Some(rest) => rest.split_once(']')?,
+        None => (text, ""),
+    };
+    let (address, zone) = match inside.split_once('%') {
+        Some((address, zone)) => (address, Some(zone)),
+        None => (inside, None),
+    };
+    let ip: Ipv6Addr = address.parse().ok()?;
+    let fits = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
+    let is_zone =
+        |zone: &str| (1..=limits::ZONE_BYTES_MAX).contains(&zone.len()) && zone.chars().all(fits);
+    let refused = |why: String| Some(Err(Error::Refused(why)));
+    match zone {
+        Some(zone) if !is_zone(zone) => {
+            return refused(format!("'{zone}' is no interface: write {address}%eth0"));
+        }
+        None if ip.is_unicast_link_local() => {
+            return refused(format!(
+                "{address} counts in one network alone: say which interface leads there, as {address}%eth0"
+            ));
+        }
+        Some(_) | None => {}
+    }
+    let port = match tail.strip_prefix(':') {
+        Some(text) => port(text),
+        None if tail.is_empty() => Ok(PORT),
+        None => return None,
+    };
+    Some(port.map(|port| Target {
+        host: inside.to_owned(),
+        port,
+    }))
 }
 
 /// The robot if none is named: the virtual one that runs here, or what listens on this machine.
@@ -249,6 +293,9 @@ mod tests {
             ("trik:8888", "trik", 8888),
             ("::1", "::1", 8888),
             ("[::1]:9", "[::1]:9", 9),
+            ("[::1]", "::1", 8888),
+            ("fe80::1%eth0", "fe80::1%eth0", 8888),
+            ("[fe80::1%wlan-0.5]:9", "[fe80::1%wlan-0.5]:9", 9),
         ] {
             let target = target(text).expect(text);
             assert_eq!((target.to_string(), target.port), (shown.to_owned(), port));
@@ -262,6 +309,15 @@ mod tests {
             "trik:65536",
             "trik:x",
             "a:b:c",
+            "fe80::1",
+            "[fe80::1]:9",
+            "fe80::1%",
+            "fe80::1%a b",
+            "fe80::1%0123456789abcdef",
+            "[::1]9",
+            "[::1]:0",
+            "[::1",
+            "1.2.3.4%eth0",
         ] {
             assert!(target(text).is_err(), "{text}");
         }
@@ -271,6 +327,25 @@ mod tests {
                 .to_string()
                 .contains("'99999' is no port")
         );
+    }
+
+    #[test]
+    fn an_address_of_one_network_needs_its_interface_and_keeps_it() {
+        let said = |text: &str| target(text).unwrap_err().to_string();
+        assert_eq!(
+            said("[fe80::1]:9"),
+            "fe80::1 counts in one network alone: say which interface leads there, as fe80::1%eth0"
+        );
+        assert_eq!(said("fe80::1%"), "'' is no interface: write fe80::1%eth0");
+        let address: SocketAddr = "[fe80::1%3]:8888".parse().unwrap();
+        assert_eq!(Target::from(address).to_string(), "fe80::1%3");
+        // The loopback interface has no such address, but leads to itself.
+        let lo = Target {
+            host: "::1%1".to_owned(),
+            port: 8888,
+        };
+        let found = (lo.host.as_str(), lo.port).to_socket_addrs();
+        assert!(found.is_ok_and(|mut found| found.any(|one| one.is_ipv6())));
     }
 
     #[test]

@@ -86,7 +86,7 @@ fn attributes_are_nodes_of_their_own_with_names_of_their_own() {
     };
     for name in [
         "device", "bin_data", "value", "value0", "value12", "units", "format", "poll_ms", "fault",
-        "stats", "owner",
+        "stages", "stats", "owner",
     ] {
         let reason =
             format!("robot.lua:3: x: '{name}' is a file of every node and cannot be an attribute");

@@ -120,7 +120,8 @@ export class Mirror {
           look,
           EditorState.lineSeparator.of(endOfLines(options.text)),
           EditorState.phrases.of(options.phrases),
-          EditorView.contentAttributes.of({ 'aria-label': options.label }),
+          // An editor that scrolls is reached by the keyboard.
+          EditorView.contentAttributes.of({ 'aria-label': options.label, tabindex: '0' }),
           this.#fixed.of(EditorState.readOnly.of(options.isFixed)),
           EditorView.updateListener.of((update) => {
             if (update.docChanged) options.changed(update.state.sliceDoc());

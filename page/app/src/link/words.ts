@@ -4,7 +4,9 @@ import type { Scene, WorldState } from '../world/types';
 
 /** What the page wants. */
 export type Order =
-  | { do: 'write'; path: string; value: string }
+  | { do: 'write'; path: string; param?: string; value: string }
+  /** To see the bytes inside of a node, or of none any more. */
+  | { do: 'inspect'; path: string | null }
   | { do: 'world'; order: string }
   | { do: 'playback'; order: string }
   | { do: 'configure'; text: string }
@@ -17,10 +19,20 @@ export type Order =
 
 /** What it is told. */
 export type News =
-  | { is: 'hello'; name: string; version: string; world: boolean; drives: boolean; configures: boolean }
+  | {
+      is: 'hello';
+      name: string;
+      version: string;
+      world: boolean;
+      /** The world takes orders: it is none that was recorded. */
+      orders: boolean;
+      drives: boolean;
+      configures: boolean;
+    }
   | { is: 'control'; mine: boolean; who: string | null }
   | { is: 'robot'; there: boolean; why: string | null }
-  | { is: 'written'; path: string; value: string; why: string | null }
+  | { is: 'written'; path: string; param: string | null; value: string; why: string | null }
+  | { is: 'stages'; path: string; at_s: number; tuples: string[] }
   | { is: 'configured'; why: string | null }
   /** A program has another name; null: it is gone. */
   | { is: 'programs'; name: string; to: string | null }

@@ -2,7 +2,7 @@
 //
 // Owns the reading of what was told; docs/user/journal.md has its form. Believes nothing.
 
-import { THINGS_MAX, SHAPE_PARTS_MAX, SCENE_ITEMS_MAX } from '../limits';
+import { PLACES_TRIED_MAX, SCENE_ITEMS_MAX, SHAPE_PARTS_MAX, SLICE_MS, THINGS_MAX } from '../limits';
 import { isObject } from '../robot/plain';
 import type { Line } from '../robot/recording';
 import type { Known } from '../robot/robot.svelte';
@@ -11,6 +11,7 @@ import { Ground, saysWhere } from '../world/ground.svelte';
 import { Trail } from '../world/trail';
 import type { Item, Mark, Movable, Place, Placed, Scene, Sensor, Shape, WorldState } from '../world/types';
 import { countUntil } from './steps';
+import { Ways } from './ways';
 
 /** What stood still from a time on. */
 export interface SceneText {
@@ -30,9 +31,13 @@ export class PastWorld implements Around {
   readonly trail = new Trail();
   readonly isGround = false;
   readonly #scenes: { time: number; scene: Scene }[];
+  /** How many places are shown; with how many of them in the ways. */
+  #shown = '';
+  readonly #ways = new Ways();
+  /** Places whose ways are found. */
+  #found = 0;
+  /** The scene of the last of these. */
   #scene: Scene | undefined;
-  /** How many places the trail has. */
-  #count = 0;
 
   constructor(
     private readonly recorded: Recorded,
@@ -49,30 +54,48 @@ export class PastWorld implements Around {
     const now = this.now();
     // The recorder finds the world a moment after it has begun.
     const count = Math.max(1, countUntil(places, now));
-    if (count === this.#count) return;
-    if (count < this.#count) {
-      this.trail.clear();
-      this.trail.told();
-      this.#count = 0;
+    this.#find(count);
+    const shown = `${count} ${Math.min(this.#found, count)}`;
+    if (shown === this.#shown) return;
+    this.#shown = shown;
+    const at = this.#stateAt(count);
+    if (at) {
+      this.state = at.state;
+      this.scene = this.#sceneAt(at.time);
     }
-    for (; this.#count < count; this.#count++) {
-      const line = places[this.#count];
+    this.#ways.cut(places[count - 1]?.time ?? now, this.trail);
+  }
+
+  /** Each place is read once for the ways, a little at a look: they are there when they are found. */
+  #find(count: number): void {
+    const { places } = this.recorded;
+    const until_ms = performance.now() + SLICE_MS;
+    for (; this.#found < count && performance.now() < until_ms; this.#found++) {
+      const line = places[this.#found];
       const state = line && stateOf(parsed(line.text));
       if (!state || !line) continue;
-      this.#enter(line.time);
-      this.trail.put(state);
-      this.state = state;
+      const scene = this.#sceneAt(line.time);
+      if (scene !== this.#scene) this.#ways.tell(line.time);
+      this.#scene = scene;
+      this.#ways.put(line.time, state);
     }
-    if (this.#scene !== this.scene) this.scene = this.#scene;
+  }
+
+  /** The last of so many places that says something. */
+  #stateAt(count: number): { time: number; state: WorldState } | undefined {
+    const { places } = this.recorded;
+    for (let at = count - 1; at >= Math.max(0, count - PLACES_TRIED_MAX); at--) {
+      const line = places[at];
+      const state = line && stateOf(parsed(line.text));
+      if (state) return { time: line.time, state };
+    }
+    return undefined;
   }
 
   /** The scene of a time; before the first one it is that. */
-  #enter(time: number): void {
+  #sceneAt(time: number): Scene {
     const last = this.#scenes.findLast((one) => one.time <= time) ?? this.#scenes[0];
-    const scene = last?.scene ?? BARE;
-    if (scene === this.#scene) return;
-    this.#scene = scene;
-    this.trail.told();
+    return last?.scene ?? BARE;
   }
 }
 
@@ -87,7 +110,7 @@ export function aroundOf(
 }
 
 /** A world whose scene has no room in a recording. */
-const BARE: Scene = {
+export const BARE: Scene = {
   bounds: [-3, -3, 3, 3],
   floor: '#ffffff',
   items: [],

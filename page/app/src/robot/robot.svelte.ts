@@ -3,21 +3,23 @@
 // Owns what was heard of it. Values come thousands of times in a second, so they are in plain objects, and `tick` says, once for
 // each picture, that something has changed.
 
+import { Inside } from '../inside/inside.svelte';
 import { Link } from '../link/link';
 import type { News, Playback } from '../link/words';
 import type { Around } from '../world/around';
-import { Ground } from '../world/ground.svelte';
-import { poseOf } from '../world/mount';
+import { Ground, saysWhere } from '../world/ground.svelte';
 import { ToldWorld } from '../world/told.svelte';
 import type { Scene, WorldState } from '../world/types';
 import { Clock } from './clock';
 import { Configuration } from './configuration.svelte';
 import { Debugger } from './debugger.svelte';
+import { BARE, sceneOf, stateOf } from '../past/around.svelte';
 import type { Past } from '../past/past.svelte';
 import { History, type Timeline } from './history';
 import { Programs } from './program.svelte';
 import { type Fields, type Line, type Node, Recording } from './recording';
 import { Wanted } from './wanted';
+import { heard } from '../words';
 
 /** A node and what it gave. */
 export interface Known {
@@ -45,8 +47,12 @@ const RATE_HZ = 60;
 const ABOUT = 'trikfs';
 /** Lines that are kept. */
 const LINES = 500;
+/** ESTALE: the node has left the tree. */
+const LEFT = 116;
 /** A line of the log is about the order that was refused so shortly before or after it. */
 const MISTAKE_MS = 1000;
+/** Nodes of which such a line is kept. */
+const MISTAKES = 1000;
 
 export class Robot {
   /** Something has changed since the last picture; only reading it makes a component look again. */
@@ -58,6 +64,7 @@ export class Robot {
   name = $state('');
   version = $state('');
   hasWorld = $state(false);
+  #ordersWorld = $state(false);
   mayDrive = $state(true);
   isInControl = $state(false);
   /** The address of the browser that is in control; empty if none is. */
@@ -72,6 +79,8 @@ export class Robot {
   readonly #ground: Ground;
   /** A node says where the robot is. */
   #saysWhere = $state(false);
+  /** Nodes that a connection has told of, until its first sample: then it has told of all. */
+  #toldOf: Set<string> | undefined;
 
   readonly #nodes = new Map<string, Live>();
   #paths = $state.raw<string[]>([]);
@@ -83,6 +92,7 @@ export class Robot {
   readonly programs: Programs;
   readonly debugger: Debugger;
   readonly configuration: Configuration;
+  readonly inside: Inside;
   readonly #wanted: Wanted;
   readonly #stops = new Set<() => void>();
   readonly #watchers = new Set<(path: string, fields: Fields) => void>();
@@ -96,6 +106,7 @@ export class Robot {
     this.programs = new Programs(this.link);
     this.debugger = new Debugger(this.link);
     this.configuration = new Configuration(this.link);
+    this.inside = new Inside(this.link);
     this.#wanted = new Wanted(address, this);
     this.#ground = new Ground(
       () => this.#nodes,
@@ -155,7 +166,7 @@ export class Robot {
 
   /** The world takes orders. */
   get mayOrderWorld(): boolean {
-    return this.hasWorld && !this.past;
+    return this.#ordersWorld && !this.past;
   }
 
   /** The nodes of the robot as it is now, whatever is shown. */
@@ -229,6 +240,7 @@ export class Robot {
         this.name = news.name;
         this.version = news.version;
         this.hasWorld = news.world;
+        this.#ordersWorld = news.orders;
         this.mayDrive = news.drives;
         this.configuration.mayReplace = news.configures;
         break;
@@ -241,24 +253,32 @@ export class Robot {
         if (news.there) this.#begin();
         break;
       case 'written':
-        if (news.why === null) this.refused.delete(news.path);
+        if (news.param !== null) {
+          const why = news.why === null ? null : (this.#mistakeOf(news.path) ?? news.why);
+          this.inside.written(news.path, news.param, why);
+        } else if (news.why === null) this.refused.delete(news.path);
         else this.refused.set(news.path, this.#mistakeOf(news.path) ?? news.why);
+        this.#isDirty = true;
+        break;
+      case 'stages':
+        this.inside.heard(news.path, news.at_s, news.tuples);
         this.#isDirty = true;
         break;
       case 'programs':
         void this.programs.changed(news.name, news.to);
         break;
       case 'refused':
-        this.refusal = news.why;
+        this.refusal = heard(news.why);
         break;
       case 'configured':
         this.configuration.configured(news.why);
         break;
       case 'scene':
-        this.#told.scene = news.scene;
+        // What was recorded may be from anywhere.
+        this.#told.scene = this.#ordersWorld ? news.scene : (sceneOf(news.scene) ?? BARE);
         break;
       case 'world':
-        this.#told.state = news.state;
+        this.#told.state = this.#ordersWorld ? news.state : (stateOf(news.state) ?? this.#told.state);
         this.#isDirty = true;
         break;
       case 'playback':
@@ -285,6 +305,7 @@ export class Robot {
   /** The robot is there: everything is told from now on. */
   #begin(): void {
     this.#recording = new Recording(this);
+    this.#toldOf = new Set();
     this.#clock.begin();
     this.link.request(`stream:;hz=${RATE_HZ}`);
     this.programs.begin();
@@ -294,6 +315,7 @@ export class Robot {
   // What the recording says.
 
   node(node: Node): void {
+    this.#toldOf?.add(node.path);
     const old = this.#nodes.get(node.path);
     if (old?.node.format === node.format) return;
     this.#nodes.set(node.path, {
@@ -304,11 +326,29 @@ export class Robot {
       fault: '',
       histories: new Map(),
     });
+    this.#listed();
+  }
+
+  /** Other nodes are there than before. */
+  #listed(): void {
     this.#paths = [...this.#nodes.keys()].sort();
-    this.#saysWhere ||= poseOf(node) !== undefined;
+    this.#saysWhere = saysWhere(this.#nodes);
+  }
+
+  /** Nodes that are not in the tree any more. */
+  #part(paths: readonly string[]): void {
+    for (const path of paths) this.#nodes.delete(path);
+    if (paths.length > 0) this.#listed();
+    this.#isDirty = true;
   }
 
   sample(path: string, time: number, fields: Fields): void {
+    const told = this.#toldOf;
+    if (told) {
+      // The robot may have come back with another tree. What is wanted comes over a connection of its own.
+      this.#toldOf = undefined;
+      this.#part([...this.#nodes.keys()].filter((path) => !told.has(path) && !this.#wanted.has(path)));
+    }
     const known = this.#nodes.get(path);
     if (!known) return;
     this.#hear(time);
@@ -329,7 +369,9 @@ export class Robot {
 
   line(line: Line): void {
     this.#hear(line.time);
-    if (line.topic === '/faults') {
+    if (line.topic === '/faults' && line.errno === LEFT) {
+      this.#part([line.name.replace(/^\//, '')]);
+    } else if (line.topic === '/faults') {
       const known = this.#nodes.get(line.name.replace(/^\//, ''));
       if (known) {
         known.fault = line.text;
@@ -345,11 +387,15 @@ export class Robot {
   }
 
   /** The log says in a sentence what the number of an error only hints at; it may come before or after that. */
-  #explain(line: Line): void {
-    const text = /^caller: (.*)/s.exec(line.text)?.[1];
-    if (text === undefined || !this.#nodes.has(line.name)) return;
-    this.#mistakes.set(line.name, { text, at_ms: performance.now() });
-    if (this.refused.has(line.name)) this.refused.set(line.name, text);
+  #explain({ text: line }: Line): void {
+    const [, path = '', rest = ''] = /^\[ *[\d.]+\] (.+?): (.*)$/s.exec(line) ?? [];
+    const [, caller, text = ''] = /^(caller: )?(.*)$/s.exec(rest) ?? [];
+    const param = /^params\/(\S+)/.exec(text)?.[1];
+    if (param !== undefined) this.inside.explain(path, param, text);
+    if (caller === undefined) return;
+    this.#mistakes.set(path, { text, at_ms: performance.now() });
+    if (this.#mistakes.size > MISTAKES) this.#mistakes.clear();
+    if (this.refused.has(path)) this.refused.set(path, text);
     this.#isDirty = true;
   }
 

@@ -36,6 +36,10 @@ export class Wanted {
     private readonly taker: Taker,
   ) {}
 
+  has(path: string): boolean {
+    return this.#paths.has(path);
+  }
+
   /** Returns what ends it. */
   add(path: string): () => void {
     this.#paths.set(path, (this.#paths.get(path) ?? 0) + 1);

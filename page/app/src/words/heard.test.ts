@@ -14,6 +14,16 @@ const sources = import.meta.glob<string>(
     '../../../../trikfs/src/device/i2c/bus.rs',
     '../../../../trikfs/src/newest.rs',
     '../../../../trikfs/src/newest/*.rs',
+    '../../../../trikfs/src/files/param.rs',
+    '../../../../trikfs/src/device/lines.rs',
+    '../../../../config/lua/trik/*.lua',
+    '../../../../sim/src/body/order.rs',
+    '../../../../sim/src/faults.rs',
+    '../../../../trik/src/up/around.rs',
+    '../../../../trik/src/up/world.rs',
+    '../../../../trik/src/replay/world.rs',
+    '../../../../page/src/error.rs',
+    '../../../../page/src/words.rs',
   ],
   { query: '?raw', import: 'default', eager: true },
 );
@@ -47,6 +57,12 @@ it('sentences within sentences are translated, and others stay', () => {
   const lease = 'caller: process 12 (python3) holds the lease with priority 5: see motors/M3/owner';
   expect(heard(lease)).not.toMatch(/holds|caller/);
   expect(heard(lease)).toContain('12 (python3)');
+  const bus = heard('device: no answer from 0x48 on /dev/i2c-2: Remote I/O error (os error 121)');
+  expect(bus).toContain('0x48');
+  expect(bus).not.toMatch(/answer|error/);
+  expect(heard('params/alpha is a number from 0.01 to 1, not 7')).toBe(
+    'params/alpha — это число от 0.01 до 1, а не 7',
+  );
   for (const text of ['', 'something else', 'a has begun', '{name}', 'x'.repeat(5000)]) {
     expect(heard(text)).toBe(text);
   }

@@ -4,8 +4,8 @@
 
 import type { WorldState } from './types';
 
-/** Points of one way; of a longer one the newest. */
-const POINTS = 20_000;
+/** Points of one way that are drawn; of a longer one the newest. */
+export const POINTS = 20_000;
 /** Nearer points are one, in metres. */
 const NEAR = 0.002;
 /** A jump of that many metres is a hand's work. */
@@ -65,6 +65,12 @@ export class Trail {
 }
 
 function extend({ points }: Stroke, x: number, y: number): void {
+  lengthen(points, x, y);
+  if (points.length > 2 * POINTS) points.splice(0, POINTS);
+}
+
+/** The next point of a way, if it is another one; after a jump the way has a gap. */
+export function lengthen(points: number[], x: number, y: number): void {
   const beforeX = points[points.length - 2];
   const beforeY = points[points.length - 1];
   if (beforeX !== undefined && beforeY !== undefined) {
@@ -73,5 +79,4 @@ function extend({ points }: Stroke, x: number, y: number): void {
     if (far > JUMP) points.push(NaN, NaN);
   }
   points.push(x, y);
-  if (points.length > 2 * POINTS) points.splice(0, POINTS);
 }

@@ -73,6 +73,12 @@ export class View {
     return this.robot.around?.trail ?? this.#ways;
   }
 
+  /** Nothing is known of the ways until now. */
+  #forget(): void {
+    this.#ways.clear();
+    this.#ways.told();
+  }
+
   #look(): void {
     this.robot.around?.look();
     const { scene, world } = this.robot;
@@ -85,8 +91,10 @@ export class View {
       this.#isDirty = true;
     }
     if (world !== this.#state) {
+      // A recording that goes back begins another way.
+      if (this.#state && world.t < this.#state.t) this.#forget();
       this.#state = world;
-      if (this.robot.mayOrderWorld) this.#ways.put(world);
+      if (!this.robot.around?.trail) this.#ways.put(world);
       this.#isDirty = true;
     }
     if (!this.#isDirty) return;
