@@ -28,16 +28,16 @@ pub(super) struct Adapter {
     process: Child,
     to: ChildStdin,
     from: Receiver<Value>,
-    way: Option<Way>,
+    way: Option<OwnPort>,
 }
 
 /// A way to the adapter, from a port that is ours before the adapter is there, and that no other process can come from.
-struct Way {
+struct OwnPort {
     socket: OwnedFd,
     port: u16,
 }
 
-impl Way {
+impl OwnPort {
     fn new() -> io::Result<Self> {
         // Without SO_REUSEADDR no other socket gets this port, bound or not (socket(7)).
         let flags = SocketFlags::CLOEXEC;
@@ -104,7 +104,7 @@ impl Adapter {
     pub fn start(python: &str) -> Result<Self, Refused> {
         must_have(python)?;
         let no = |why: std::io::Error| Refused::new(format!("debugpy cannot be started: {why}"));
-        let way = Way::new().map_err(no)?;
+        let way = OwnPort::new().map_err(no)?;
         let mut process = Command::new(python)
             .args(["-c", ADAPTER, &way.port.to_string()])
             .env(SAFE.0, SAFE.1)

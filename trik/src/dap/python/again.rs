@@ -18,13 +18,13 @@ const RUN_NUMBERS: u64 = 1_000_000;
 
 /// Breakpoints of one kind, or in one file, as the editor has said them last.
 #[derive(Debug)]
-struct Said {
+struct RememberedPoints {
     request: Request,
     /// Their numbers as the editor knows them, where it does.
     numbers: Vec<Option<u64>>,
 }
 
-impl Said {
+impl RememberedPoints {
     fn key(request: &Request) -> (&str, Option<&Value>) {
         (&request.command, request.arguments.get("source"))
     }
@@ -33,7 +33,7 @@ impl Said {
 /// What an editor has said to debugpy, and heard.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
-    points: Vec<Said>,
+    points: Vec<RememberedPoints>,
     /// Requests that debugpy has not answered.
     open: Vec<Request>,
     threads: BTreeSet<u64>,
@@ -54,13 +54,14 @@ impl Memory {
         if !request.command.starts_with("set") || !request.command.ends_with("Breakpoints") {
             return;
         }
-        let key = Said::key(request);
-        self.points.retain(|said| Said::key(&said.request) != key);
+        let key = RememberedPoints::key(request);
+        self.points
+            .retain(|said| RememberedPoints::key(&said.request) != key);
         if self.points.len() >= limits::DAP_SOURCES_MAX {
             self.points.remove(0);
         }
         let (request, numbers) = (request.clone(), Vec::new());
-        self.points.push(Said { request, numbers });
+        self.points.push(RememberedPoints { request, numbers });
     }
 
     /// What debugpy says, with the numbers that the editor knows.
