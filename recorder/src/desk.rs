@@ -147,7 +147,7 @@ impl Desk {
         self.give(Order::Line(Entry::Line(story, now_ns(), Arc::new(line))));
     }
 
-    /// A program starts: its file goes with every recording, in place of that of the program before.
+    /// A program starts: its file goes with every recording, instead of that of the program before.
     pub fn program(&self, name: &str, media_type: &'static str, bytes: &[u8]) {
         let name = name.into();
         self.give(Order::Program(Entry::Attachment(

@@ -4,7 +4,7 @@
 //! delayed. Knows no command, no network and no program of a robot; those who do hand their own lines over.
 //!
 //! - `entry`: something for a recording
-//! - `nodes`, `watch`: what a tree has, and what happens in it
+//! - `nodes`, `watch`, `watched`: what a tree has, and what happens in it
 //! - `raw`: what sources give, before it is converted
 //! - `world`: what a virtual robot tells of the world around it
 //! - `pen`: entries as messages of one recording
@@ -35,6 +35,7 @@ mod raw;
 mod standard;
 pub mod stream;
 pub mod watch;
+mod watched;
 pub mod world;
 
 pub use standard::place_units;

@@ -5,7 +5,7 @@
 
 use crate::entry::Entry;
 use crate::limits;
-use crate::watch::{From, Watched, Wish};
+use crate::watched::{From, Watched, Wish};
 use journal::node::Node;
 use sample_bus::Reader;
 use std::path::Path;

@@ -7,14 +7,15 @@ use crate::clock::{clock_ns, now_ns, offset_ns};
 use crate::entry::{Entry, Known};
 use crate::error::Error;
 use crate::raw::Raws;
+pub use crate::watched::Wish;
+use crate::watched::{From, Watched};
 use crate::world::World;
 use crate::{limits, nodes};
-use journal::layout::Layout;
 use journal::node::Node;
 use journal::standard::{Level, Log};
 use journal::write::{ABOUT, Story};
 use nix::time::ClockId;
-use sample_bus::{Event, Reader, Step};
+use sample_bus::Reader;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read};
@@ -22,17 +23,6 @@ use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// One node that is looked at.
-pub(crate) struct Watched {
-    pub(crate) known: Arc<Known>,
-    pub(crate) ring: Reader,
-    wish: Wish,
-    /// The last errno, and what `fault` said of it.
-    fault: (i32, Arc<str>),
-    /// What it had last.
-    newest: Option<Entry>,
-}
 
 /// How the configuration of a tree begins that gives what was recorded.
 pub const REPLAYED: &str = "-- Made for a replay";
@@ -57,89 +47,6 @@ fn ring(root: &Path, node: &Node, wish: Wish, is_replayed: bool) -> Option<Reade
 fn is_sampled_by_the_clock(root: &Path, node: &str) -> bool {
     let period_ms = nodes::text(&root.join(node).join("poll_ms"));
     period_ms.is_some_and(|text| text.trim().parse().is_ok_and(|ms: f64| ms > 0.0))
-}
-
-impl Watched {
-    pub(crate) fn new(number: u32, mut node: Node, ring: Reader, wish: Wish) -> Self {
-        let size = Layout::parse(&node.format).map_or(0, |layout| layout.size());
-        if size != ring.tuple_bytes() {
-            // What is written has no names if it is converted on its way.
-            node.format = format!("u8 x {}", ring.tuple_bytes());
-        }
-        Self {
-            known: Arc::new(Known { number, node }),
-            ring,
-            wish,
-            fault: (0, Arc::default()),
-            newest: None,
-        }
-    }
-
-    /// One event of its ring.
-    fn entry(&mut self, root: &Path, event: Event, unix_ns: u64, tuple: &[u8]) -> Entry {
-        let is_new = event.errno != self.fault.0;
-        if is_new {
-            let told = match event.errno {
-                0 => None,
-                _ => nodes::text(&root.join(&self.known.node.path).join("fault")),
-            };
-            self.fault = (event.errno, told.unwrap_or_default().into());
-        }
-        match event.errno {
-            0 => Entry::Sample(self.known.clone(), unix_ns, tuple.into()),
-            errno => Entry::Fault(self.known.clone(), unix_ns, errno, self.fault.1.clone()),
-        }
-    }
-
-    /// Takes what has come; gives how much was overwritten before. What a node had when the looking began comes first.
-    pub(crate) fn look(
-        &mut self,
-        from: &From<'_>,
-        tuple: &mut Vec<u8>,
-        out: &mut Vec<Entry>,
-    ) -> u64 {
-        let begin = out.len();
-        let mut missed = 0;
-        let mut before = None;
-        loop {
-            match self.ring.next_event(tuple) {
-                Step::Event(event) => {
-                    let time_ns = event.time_ns.max(from.begin_ns);
-                    let unix_ns = time_ns.saturating_add_signed(from.offset_ns);
-                    let entry = self.entry(from.root, event, unix_ns, tuple);
-                    if event.time_ns < from.begin_ns {
-                        before = Some(entry);
-                    } else {
-                        out.extend(before.take());
-                        out.push(entry);
-                    }
-                }
-                Step::Missed(count) => missed += u64::from(count),
-                Step::Nothing => break,
-            }
-        }
-        out.extend(before);
-        if out.len() > begin {
-            self.newest = out.last().cloned();
-        }
-        missed
-    }
-}
-
-/// What times of samples are counted from.
-pub(crate) struct From<'a> {
-    root: &'a Path,
-    begin_ns: u64,
-    offset_ns: i64,
-}
-
-/// How much a node is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Wish {
-    /// Its samples, if the clock takes them or if others need them: a camera is not started for that.
-    ByTheClock,
-    /// Its samples, whatever has to run for them.
-    Samples,
 }
 
 /// Which nodes are looked at; None for one that is not.

@@ -14,6 +14,7 @@ mod joining;
 mod need;
 mod pace;
 mod page;
+mod tap;
 
 use crate::clock::Stamp;
 use crate::crew::lock_patiently;
@@ -26,7 +27,6 @@ use crate::node::{Feed, Node};
 use crate::reader::Reader;
 use crate::state_reader::StateReader;
 use crate::transport::RequestId;
-use bus::Tap;
 use config::description::Pace;
 use config::format::FieldKind;
 use need::Need;
@@ -37,6 +37,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
+use tap::Tap;
 
 /// Newest sample of one node and everything that keeps it new.
 pub struct Newest {

@@ -1,6 +1,6 @@
 //! What programs of a robot do, as it tells it from now on, for those who pass it on.
 //!
-//! Owns the connection and its thread: a robot that is not there, or goes, is asked again later. Whoever takes the lines too
+//! Owns the connection and its thread: a robot that is not there, or goes, is asked again later. One who takes the lines too
 //! slowly misses some.
 
 use super::link::{Message, ms};

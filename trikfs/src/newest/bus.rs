@@ -4,61 +4,8 @@
 //! files are is not known here.
 
 use super::{Newest, too_old};
-use crate::clock::Stamp;
-use crate::errno::{Blame, Error};
-use crate::events::lock;
 use crate::node::Node;
-use crate::sample_bus::Ring;
 use config::description::Pace;
-use std::sync::Mutex;
-
-/// What the source gives before it is converted, in shared memory.
-#[derive(Default)]
-pub(super) struct Tap(Mutex<Tapped>);
-
-#[derive(Default)]
-struct Tapped {
-    ring: Option<Ring>,
-    /// The failure that stands there.
-    failure: Option<Error>,
-    /// The failure that comes next is what a converter said of the last tuple.
-    is_refused: bool,
-}
-
-impl Tap {
-    fn set_ring(&self, ring: Option<Ring>) {
-        let fresh = Tapped {
-            ring,
-            ..Tapped::default()
-        };
-        // Outside the lock: the end of a ring removes a file.
-        let _before = std::mem::replace(&mut *lock(&self.0), fresh);
-    }
-
-    fn publish(&self, tuples: &[u8], tuple_size: usize, is_refused: bool) {
-        let mut tapped = lock(&self.0);
-        let Some(ring) = &mut tapped.ring else { return };
-        for tuple in tuples.chunks_exact(tuple_size) {
-            ring.publish(Stamp::now(), tuple);
-        }
-        tapped.failure = None;
-        tapped.is_refused = is_refused;
-    }
-
-    /// What a converter says of good bytes is no failure of the source.
-    pub(super) fn fail(&self, error: &Error) {
-        let mut tapped = lock(&self.0);
-        let is_refused = std::mem::take(&mut tapped.is_refused);
-        if is_refused || error.blame() == Blame::Converter || tapped.failure.as_ref() == Some(error)
-        {
-            return;
-        }
-        if let Some(ring) = &mut tapped.ring {
-            ring.fail(Stamp::now(), error);
-            tapped.failure = Some(error.clone());
-        }
-    }
-}
 
 impl Newest {
     /// Takes the rings that the description asks for.
