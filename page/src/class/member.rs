@@ -1,6 +1,6 @@
-//! A robot as a class names it, and the border to whoever knows where it is.
+//! A robot as a class names it, and the border to the program that knows where it is.
 //!
-//! Owns neither: addresses and names are those of the program that serves the page.
+//! Owns neither: addresses and names are those of that program, which serves the page.
 
 use lang_text::problem::Words;
 use std::net::SocketAddr;

@@ -112,7 +112,7 @@ fn parse(text: &str, folder: &Path) -> Result<Vec<Robot>, (usize, String)> {
     let mut last = 0;
     for (number, line) in (1..).zip(text.lines()) {
         last = number;
-        let Some(robot) = robot(line, folder).map_err(|why| (number, why))? else {
+        let Some(robot) = robot(line, folder).map_err(|why| (number, why.to_string()))? else {
             continue;
         };
         let same = |other: &Robot| other.name == robot.name || other.at == robot.at;
@@ -139,7 +139,7 @@ fn parse(text: &str, folder: &Path) -> Result<Vec<Robot>, (usize, String)> {
 }
 
 /// The robot of a line; None: the line names none.
-fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, String> {
+fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, Error> {
     let mut words = line
         .split_whitespace()
         .take_while(|word| !word.starts_with('#'));
@@ -150,7 +150,7 @@ fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, String> {
     check(name, most)?;
     let at = words
         .next()
-        .ok_or_else(|| format!("'{name}' has no address: {FORM}"))?;
+        .ok_or_else(|| wrong(format!("'{name}' has no address: {FORM}")))?;
     let at = match is_path(at) {
         // Whether a robot is there is seen when somebody wants something of it.
         true => folder
@@ -158,7 +158,7 @@ fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, String> {
             .to_string_lossy()
             .into_owned(),
         false => {
-            target(at).map_err(|why| format!("'{at}': {why}"))?;
+            target(at).map_err(|why| wrong(format!("'{at}': {why}")))?;
             at.to_owned()
         }
     };
@@ -172,27 +172,34 @@ fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, String> {
         if let Some(port) = word.strip_prefix(PAGE) {
             let port = port.parse().ok().filter(|port| *port > 0);
             let port: u16 =
-                port.ok_or_else(|| format!("'{word}': a port is a number from 1 to 65535"))?;
+                port.ok_or_else(|| wrong(format!("'{word}': a port is a number from 1 to 65535")))?;
             robot.page = Some(port);
         } else if robot.group.is_empty() {
             check(word, most)?;
             word.clone_into(&mut robot.group);
         } else {
-            return Err(format!("'{word}' is too much: {FORM}"));
+            return Err(wrong(format!("'{word}' is too much: {FORM}")));
         }
     }
     Ok(Some(robot))
 }
 
+/// A line that says what nobody understands.
+fn wrong(why: impl Into<String>) -> Error {
+    Error::Refused(why.into())
+}
+
 /// Whether a word can be the name of a robot or of a group.
-fn check(word: &str, most: usize) -> Result<(), String> {
+fn check(word: &str, most: usize) -> Result<(), Error> {
     if word.len() > most {
-        return Err(format!("a name is longer than {most} bytes"));
+        return Err(wrong(format!("a name is longer than {most} bytes")));
     }
     let fits = |c: char| !c.is_control() && !",:/=".contains(c);
     match word.chars().all(fits) {
         true => Ok(()),
-        false => Err("a name has none of , : / = and no control characters".to_owned()),
+        false => Err(wrong(
+            "a name has none of , : / = and no control characters",
+        )),
     }
 }
 
