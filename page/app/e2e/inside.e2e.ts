@@ -66,11 +66,12 @@ test('bytes and values of a node are seen, and a number of its filter is turned 
   expect(there.robot.read('saw/params/alpha')).toBe('1');
   const undo = page.getByRole('button', { name: 'Take the last turn back' });
   await undo.click();
-  await undo.click();
   await expect.poll(() => there.robot.read('saw/params/alpha')).toBe('0.02');
   await undo.click();
   await expect.poll(() => there.robot.read('saw/params/alpha')).toBe('0.25');
   expect(await undo.isDisabled()).toBe(true);
+  // What was chosen stays, however often the node is told anew.
+  expect(await page.getByLabel('Read as, raw').inputValue()).toBe('>u16');
   // Who only looks sees it too, and turns nothing.
   const other = await there.look.open(`${there.robot.url}#configuration`, { locale: 'ru-RU' });
   await other.getByText('Заглянуть в конвертер').click();
