@@ -188,7 +188,7 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
 /// The world of the recording, where the player is.
 fn world_of(file: &Path, player: &Arc<Player>) -> Result<Option<Arc<dyn World>>, Error> {
     let player = player.clone();
-    let world = RecordedWorld::open(file, move || player.position())?;
+    let world = RecordedWorld::open(file, move || Player::state(&player).position)?;
     Ok(world.map(|world| Arc::new(world) as Arc<dyn World>))
 }
 

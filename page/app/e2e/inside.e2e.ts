@@ -66,17 +66,27 @@ test('bytes and values of a node are seen, and a number of its filter is turned 
   expect(there.robot.read('saw/params/alpha')).toBe('1');
   const undo = page.getByRole('button', { name: 'Take the last turn back' });
   await undo.click();
-  await undo.click();
   await expect.poll(() => there.robot.read('saw/params/alpha')).toBe('0.02');
   await undo.click();
   await expect.poll(() => there.robot.read('saw/params/alpha')).toBe('0.25');
   expect(await undo.isDisabled()).toBe(true);
+  // What was chosen stays, however often the node is told anew.
+  expect(await page.getByLabel('Read as, raw').inputValue()).toBe('>u16');
   // Who only looks sees it too, and turns nothing.
   const other = await there.look.open(`${there.robot.url}#configuration`, { locale: 'ru-RU' });
-  await other.getByText('Заглянуть в конвертер').click();
-  await other.getByLabel('Узел:').selectOption('saw');
-  await other.getByText('значение', { exact: true }).first().waitFor();
-  expect(await other.getByRole('slider', { name: 'Число alpha' }).isDisabled()).toBe(true);
+  await other
+    .getByText(
+      '\u0417\u0430\u0433\u043b\u044f\u043d\u0443\u0442\u044c \u0432 \u043a\u043e\u043d\u0432\u0435\u0440\u0442\u0435\u0440',
+    )
+    .click();
+  await other.getByLabel('\u0423\u0437\u0435\u043b:').selectOption('saw');
+  await other
+    .getByText('\u0437\u043d\u0430\u0447\u0435\u043d\u0438\u0435', { exact: true })
+    .first()
+    .waitFor();
+  expect(await other.getByRole('slider', { name: '\u0427\u0438\u0441\u043b\u043e alpha' }).isDisabled()).toBe(
+    true,
+  );
   await other.context().close();
   there.robot.write('config', `${before}\n`);
   await page.context().close();

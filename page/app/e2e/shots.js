@@ -15,6 +15,25 @@ brick.motor('M4').setPower(60)
 script.wait(60000)
 `;
 
+const HEIGHTS = Array.from({ length: 50 }, (_, at) => `\\${(at * 5 + (at % 7) * 6) % 256}\\1`).join('');
+/** A noisy sawtooth and a filter whose number can be turned. */
+const SAW = `trikfs.saw = {
+  src = fake { data = '${HEIGHTS}', period_ms = 20, loop = true }, input_tuple_size = 2, on_event = true,
+  format = 'i32 height', units = 'mm', params = { alpha = { 0.25, min = 0.01, max = 1 } },
+  converter = {
+    { converter = function(a_s, a, b_s, b) ba.i32(b, 0, ba.u16(a, 0)) end, output_tuple_size = 4 },
+    (function()
+      local last
+      return function(a_s, a, b_s, b)
+        local now = ba.i32(a, 0)
+        last = (last or now) + params.alpha * (now - (last or now))
+        ba.i32(b, 0, last)
+      end
+    end)(),
+  },
+}
+`;
+
 mkdirSync(folder, { recursive: true });
 
 const robot = await Robot.start();
@@ -89,6 +108,19 @@ try {
   await page.keyboard.press('Control+S');
   await page.getByText('Refused').waitFor();
   await shot('configuration');
+  await page.getByRole('button', { name: 'Discard changes' }).click();
+  robot.write('config', `${robot.read('config')}\n${SAW}`);
+  await page.getByText('Look into a converter').click();
+  await page.getByLabel('Node:').selectOption('saw');
+  await page.locator('.passage tbody tr').first().waitFor();
+  await page.getByLabel('Input and output of').selectOption('converter 2 of 2');
+  // The graph has six seconds.
+  await page.waitForTimeout(6000);
+  await page.getByText('Look into a converter').scrollIntoViewIfNeeded();
+  await page
+    .locator('details')
+    .first()
+    .screenshot({ path: join(folder, 'page-converter.png') });
   // Over a replay the place is that of the wheels, as on a real robot.
   const run = join(robot.home, 'run.mcap');
   const { begun, recorded } = robot.record(run, 8, false);

@@ -150,11 +150,6 @@ impl Player {
         lock(&self.shared).state.clone()
     }
 
-    /// Where it is: what is asked for at each picture.
-    pub(crate) fn position(&self) -> Duration {
-        lock(&self.shared).state.position
-    }
-
     /// What has happened since the last call.
     pub(crate) fn take_news(&self) -> Vec<String> {
         std::mem::take(&mut lock(&self.shared).news)

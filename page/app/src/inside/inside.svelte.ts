@@ -35,6 +35,8 @@ interface Turn {
   name: string;
   before: number;
   at_ms: number;
+  /** It was written, not slid to. */
+  isTyped: boolean;
 }
 
 /** Samples that are kept: half a minute of them, sixty times a second. */
@@ -96,15 +98,16 @@ export class Inside {
     if (this.passages.length > PASSAGES) this.passages.splice(0, this.passages.length - PASSAGES);
   }
 
-  /** Gives a number of the node another value. */
-  turn(name: string, value: number): void {
+  /** Gives a number of the node another value; what is slid to in one go is one turn. */
+  turn(name: string, value: number, isTyped = false): void {
     const param = this.node?.params.find((one) => one.name === name);
     if (!param || !Number.isFinite(value) || value === param.value) return;
     const { path } = this;
     const last = this.#turns.at(-1);
     const now = performance.now();
-    if (last?.path === path && last.name === name && now - last.at_ms < ONE_TURN_MS) last.at_ms = now;
-    else this.#turns.push({ path, name, before: param.value, at_ms: now });
+    const isSame = !isTyped && !last?.isTyped && last?.path === path && last.name === name;
+    if (last && isSame && now - last.at_ms < ONE_TURN_MS) last.at_ms = now;
+    else this.#turns.push({ path, name, before: param.value, at_ms: now, isTyped });
     if (this.#turns.length > TURNS_MAX) this.#turns.shift();
     this.turned = this.#turns.length;
     this.#set(path, name, value);
@@ -136,8 +139,12 @@ export class Inside {
     if (path !== this.path) return;
     const others = Object.fromEntries(Object.entries(this.wrong).filter(([other]) => other !== name));
     this.wrong = why === null ? others : { ...others, [name]: why };
-    // It goes on with the one before.
-    if (why !== null) void this.read();
+    if (why === null) return;
+    // It goes on with the one before, and there is nothing to take back.
+    const last = this.#turns.at(-1);
+    if (last?.isTyped && last.path === path && last.name === name) this.#turns.pop();
+    this.turned = this.#turns.length;
+    void this.read();
   }
 
   /** The log says in a sentence why. */

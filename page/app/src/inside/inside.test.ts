@@ -70,13 +70,15 @@ test('what a slider does in one go is taken back in one go', async () => {
 
 test('a number that is refused is said, and the one before is shown again', async () => {
   const one = await fresh();
-  one.turn('alpha', 7);
+  one.turn('alpha', 7, true);
+  expect(one.turned).toBe(1);
   one.turn('none', 7);
   one.turn('gain', NaN);
   expect(sent.filter((order) => order.do === 'write')).toHaveLength(1);
   one.written('n', 'alpha', 'out of range');
   await vi.waitFor(() => expect(values(one)).toEqual([0.5, 3]));
   expect(one.wrong).toEqual({ alpha: 'out of range' });
+  expect(one.turned).toBe(0);
   one.explain('n', 'alpha', 'params/alpha is a number from 0 to 1');
   one.explain('n', 'gain', 'nobody has asked');
   expect(one.wrong).toEqual({ alpha: 'params/alpha is a number from 0 to 1' });

@@ -61,7 +61,7 @@ it('sentences within sentences are translated, and others stay', () => {
   expect(bus).toContain('0x48');
   expect(bus).not.toMatch(/answer|error/);
   expect(heard('params/alpha is a number from 0.01 to 1, not 7')).toBe(
-    'params/alpha — это число от 0.01 до 1, а не 7',
+    'params/alpha \u2014 \u044d\u0442\u043e \u0447\u0438\u0441\u043b\u043e \u043e\u0442 0.01 \u0434\u043e 1, \u0430 \u043d\u0435 7',
   );
   for (const text of ['', 'something else', 'a has begun', '{name}', 'x'.repeat(5000)]) {
     expect(heard(text)).toBe(text);
