@@ -147,6 +147,30 @@ impl Listener {
         self.shared.control.need(self.who)
     }
 
+    /// What would hold others up waits for its turn, and is refused later if it is.
+    fn order_world(&self, words: String) -> Result<(), Error> {
+        self.need()?;
+        let world = self.shared.settings.world.clone().ok_or(Error::NoWorld)?;
+        if words.len() <= limits::WORLD_QUICK_BYTES {
+            return world.order(&words).map_err(|why| Error::World(why.0));
+        }
+        let busy = |_| Error::Busy(Busy::Worlds);
+        let turn = self
+            .shared
+            .large
+            .clone()
+            .try_acquire_owned()
+            .map_err(busy)?;
+        let news = self.news.clone();
+        tokio::task::spawn_blocking(move || {
+            let _turn = turn;
+            if let Err(why) = world.order(&words) {
+                let _ = news.try_send(News::Refused(Error::World(why.0).words()));
+            }
+        });
+        Ok(())
+    }
+
     fn obey(&self, order: Order) -> Result<(), Error> {
         match order {
             Order::Write(target, value) => {
@@ -157,28 +181,7 @@ impl Listener {
                 self.inspects.send_replace(path);
                 Ok(())
             }
-            Order::World(words) => {
-                self.need()?;
-                let world = self.shared.settings.world.clone().ok_or(Error::NoWorld)?;
-                if words.len() <= limits::WORLD_QUICK_BYTES {
-                    return world.order(&words).map_err(|why| Error::World(why.0));
-                }
-                let busy = |_| Error::Busy(Busy::Worlds);
-                let turn = self
-                    .shared
-                    .large
-                    .clone()
-                    .try_acquire_owned()
-                    .map_err(busy)?;
-                let news = self.news.clone();
-                tokio::task::spawn_blocking(move || {
-                    let _turn = turn;
-                    if let Err(why) = world.order(&words) {
-                        let _ = news.try_send(News::Refused(Error::World(why.0).words()));
-                    }
-                });
-                Ok(())
-            }
+            Order::World(words) => self.order_world(words),
             Order::Configure(text) => {
                 if let Err(why) = self.configure(text) {
                     // Not among other refusals: the page waits for this answer.
@@ -311,22 +314,9 @@ impl Teller {
     async fn run(mut self) {
         let mut holder = self.shared.control.watch();
         let playback = self.shared.settings.playback.clone();
-        let settings = &self.shared.settings;
-        let first = [
-            News::Hello {
-                name: settings.name.clone(),
-                version: env!("CARGO_PKG_VERSION").to_owned(),
-                has_world: settings.world.is_some(),
-                orders_world: (settings.world.as_ref()).is_some_and(|world| world.takes_orders()),
-                configures: settings.configures,
-                may_drive: settings.guests.may_drive(self.who.address.ip()),
-            },
-            News::control(*holder.borrow_and_update(), self.who),
-        ];
-        for news in first {
-            if !self.say(news).await {
-                return;
-            }
+        let control = News::control(*holder.borrow_and_update(), self.who);
+        if !self.say(self.hello()).await || !self.say(control).await {
+            return;
         }
         let mut pings = interval(limits::PING_TIME);
         pings.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -379,6 +369,18 @@ impl Teller {
             if !is_sent {
                 return;
             }
+        }
+    }
+
+    fn hello(&self) -> News {
+        let settings = &self.shared.settings;
+        News::Hello {
+            name: settings.name.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            has_world: settings.world.is_some(),
+            orders_world: (settings.world.as_ref()).is_some_and(|world| world.takes_orders()),
+            configures: settings.configures,
+            may_drive: settings.guests.may_drive(self.who.address.ip()),
         }
     }
 

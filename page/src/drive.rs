@@ -5,26 +5,15 @@
 use crate::control::Browser;
 use crate::error::{Busy, Error};
 use crate::limits;
-use crate::word::News;
+use crate::tree::{NONBLOCK, node, read};
+use crate::word::{News, Target};
 use std::collections::HashMap;
 use std::fs::{self, OpenOptions};
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::OpenOptionsExt;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{Notify, mpsc, watch};
-
-/// Nothing here waits for a device.
-pub const NONBLOCK: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
-
-/// What a value is for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Target {
-    /// The node.
-    pub path: String,
-    /// A number of its converters; None: its own value.
-    pub param: Option<String>,
-}
 
 /// What a browser wants moved and what was not carried out yet. Nothing in it is ever refused for want of room but new
 /// actuators: the newest value of each counts, and a rest or a stop drops what is older.
@@ -178,24 +167,6 @@ fn file(tree: &Path, path: &str) -> Result<PathBuf, Error> {
     Ok(node(tree, path)?.join("value"))
 }
 
-/// The directory of a node.
-///
-/// # Errors
-/// The text leads elsewhere.
-pub fn node(tree: &Path, path: &str) -> Result<PathBuf, Error> {
-    let is_plain = |part: Component| matches!(part, Component::Normal(_));
-    let is_path = !path.is_empty()
-        && path.len() <= limits::PATH_BYTES_MAX
-        && !path.contains('\0')
-        && Path::new(path).components().all(is_plain);
-    if !is_path {
-        return Err(Error::Path(
-            path.chars().take(limits::REPEATED_MAX).collect(),
-        ));
-    }
-    Ok(tree.join(path))
-}
-
 /// A number of a node's converters. It stays when the browser is gone: nothing moves by it alone.
 fn set(tree: &Path, path: &str, param: &str, value: &str) -> Result<(), Error> {
     let params = node(tree, path)?.join("params");
@@ -230,17 +201,6 @@ fn write(tree: &Path, driven: &mut Driven, path: &str, value: &str) -> Result<()
         driven.insert(path.to_owned(), text);
     }
     Ok(())
-}
-
-/// What the file of a value says now. One that would have to be waited for is an error.
-pub fn read(file: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    let mut options = OpenOptions::new();
-    let opened = options.read(true).custom_flags(NONBLOCK).open(file)?;
-    opened
-        .take(limits::WORDS_BYTES_MAX as u64)
-        .read_to_string(&mut text)?;
-    Ok(text)
 }
 
 fn rest(tree: &Path, driven: &mut Driven) {

@@ -3,8 +3,7 @@
 //! Owns how both are found in the tree, and how often it is looked while a browser wants to see one. Knows no converter: `stages`
 //! of a node says what they made, in hexadecimal.
 
-use crate::drive;
-use crate::limits;
+use crate::{limits, tree};
 use serde_json::{Value, json};
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -45,7 +44,7 @@ fn visit(at: &Path, path: &str, depth: usize, nodes: &mut Vec<(String, Value)>) 
         let has_stages = directory.join("stages").is_file();
         let params = params(&directory.join("params"));
         if has_stages || !params.is_empty() {
-            let text = |file: &str| drive::read(&directory.join(file)).unwrap_or_default();
+            let text = |file: &str| tree::read(&directory.join(file)).unwrap_or_default();
             let node = json!({
                 "path": path, "format": text("format").trim(), "units": text("units").trim(),
                 "stages": has_stages, "params": params,
@@ -59,7 +58,7 @@ fn params(at: &Path) -> Vec<Value> {
     let mut files: Vec<_> = fs::read_dir(at).into_iter().flatten().flatten().collect();
     files.sort_by_key(fs::DirEntry::file_name);
     let one = |entry: &fs::DirEntry| {
-        let value: f64 = drive::read(&entry.path()).ok()?.trim().parse().ok()?;
+        let value: f64 = tree::read(&entry.path()).ok()?.trim().parse().ok()?;
         let (min, max) = range(&entry.path());
         let name = entry.file_name().into_string().ok()?;
         Some(json!({"name": name, "value": value, "min": min, "max": max}))
@@ -163,11 +162,11 @@ fn look(tree: &Path, path: &str, open: Option<File>) -> Option<(File, Vec<String
     let file = match open {
         Some(file) => file,
         None => {
-            let at = drive::node(tree, path).ok()?.join("stages");
+            let at = tree::node(tree, path).ok()?.join("stages");
             let mut options = OpenOptions::new();
             options
                 .read(true)
-                .custom_flags(drive::NONBLOCK)
+                .custom_flags(tree::NONBLOCK)
                 .open(at)
                 .ok()?
         }

@@ -11,7 +11,8 @@
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
 //! - `shared`, `guests`, `control`: what all requests share; which computers may what; one of all browsers drives
-//! - `drive`: what it writes to the tree, and rest when it leaves; `inside`: the converters of a node that it looks into
+//! - `drive`: what it writes to the tree, and rest when it leaves; `inside`: the converters of a node that it looks into;
+//!   `tree`: files of the tree as both open them
 //! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
 //!   blocks
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
@@ -46,6 +47,7 @@ mod server;
 mod serving;
 mod shared;
 mod store;
+mod tree;
 mod word;
 mod words;
 pub mod world;

@@ -2,7 +2,7 @@
 //!
 //! Owns the table. It is read anew every two seconds by the browser itself.
 
-use crate::{drive, limits};
+use crate::{limits, tree};
 use lang_text::escape::escaped;
 use std::fmt::Write;
 use std::fs;
@@ -31,7 +31,7 @@ pub fn table(name: &str, tree: &Path, why_not: &str) -> String {
 
 /// A file of a node, shortened; a failure in words.
 fn text(path: &Path) -> String {
-    match drive::read(path) {
+    match tree::read(path) {
         Ok(text) => text.trim_end().chars().take(limits::CELL_LETTERS).collect(),
         // Nobody has asked for it yet, or it has nothing to say.
         Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => "no value yet".to_owned(),

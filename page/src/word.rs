@@ -3,12 +3,20 @@
 //! Owns their forms; `page/app/src/link/words.ts` has the other end. Pure.
 
 use crate::control::Browser;
-use crate::drive::Target;
 use crate::error::Error;
 use crate::inside::Stages;
 use crate::limits;
 use lang_text::problem::{Locale, Words};
 use serde_json::{Map, Value};
+
+/// What a value is for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// The node.
+    pub path: String,
+    /// A number of its converters; None: its own value.
+    pub param: Option<String>,
+}
 
 /// What a browser wants.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,6 +5,7 @@
 
 use crate::clock::now_ns;
 use crate::entry::{Batch, Entry};
+use crate::errno::LEFT;
 use crate::error::Error;
 use crate::kept::{self, BlackBox, OnSaved, SaveReason};
 use crate::limits;
@@ -369,7 +370,7 @@ impl Values {
             match entry {
                 Entry::Sample(known, ..) => drop(self.0.insert(known.number)),
                 // Somebody has put another configuration in force.
-                Entry::Fault(known, _, libc::ESTALE, _) => drop(self.0.remove(&known.number)),
+                Entry::Fault(known, _, LEFT, _) => drop(self.0.remove(&known.number)),
                 Entry::Fault(known, ..) => have_gone |= self.0.remove(&known.number),
                 Entry::Node(_) | Entry::Line(..) | Entry::Attachment(..) | Entry::Facts(..) => {}
             }

@@ -5,6 +5,7 @@
 
 use crate::clock::{clock_ns, now_ns, offset_ns};
 use crate::entry::{Entry, Known};
+use crate::errno::LEFT;
 use crate::error::Error;
 use crate::raw::Raws;
 pub use crate::watched::Wish;
@@ -348,7 +349,7 @@ impl Watch {
             let is_there = root.join(&one.known.node.path).join("bin_data").exists();
             if !is_there {
                 let why = "the node has left the tree".into();
-                out.push(Entry::Fault(one.known.clone(), now_ns(), libc::ESTALE, why));
+                out.push(Entry::Fault(one.known.clone(), now_ns(), LEFT, why));
             }
             is_there
         });

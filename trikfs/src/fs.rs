@@ -202,11 +202,8 @@ impl Fs {
             Kind::Stop if read => Err(Error::AccessDenied),
             Kind::Stop => {
                 let forest = self.forest.clone();
-                Ok((
-                    Arc::new(StopFile::new(move || forest.tree().nodes().to_vec())),
-                    Access::Direct,
-                    false,
-                ))
+                let stop = StopFile::new(move || forest.tree().nodes().to_vec());
+                Ok((Arc::new(stop), Access::Direct, false))
             }
             Kind::Device(node) => {
                 if let Some(file) = DevicesFile::open(node, read, write)? {

@@ -96,7 +96,7 @@ const SCRIPTS: [(&str, usize, &str); 13] = [
     ("page/app/e2e/robot.js", 1, "between two looks"),
     (
         "page/app/e2e/shots.js",
-        3,
+        4,
         "pictures of the last six seconds",
     ),
     ("page/app/e2e/world.e2e.js", 2, "pictures that would come"),

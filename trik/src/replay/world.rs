@@ -245,7 +245,7 @@ mod tests {
     use journal::node::Node;
     use journal::standard::{Level, Log};
     use journal::write::Writer;
-    use std::sync::atomic::AtomicU64;
+    use std::sync::atomic::AtomicU32;
 
     const S: u64 = 1_000_000_000;
     const BEGIN: u64 = 1000 * S;
@@ -316,10 +316,10 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("run.mcap");
         recorded(&path, true);
-        let position = Arc::new(AtomicU64::new(1));
+        let position = Arc::new(AtomicU32::new(1));
         let ours = position.clone();
         let world = RecordedWorld::open(&path, move || {
-            Duration::from_secs(ours.load(Ordering::Acquire))
+            Duration::from_secs(u64::from(ours.load(Ordering::Acquire)))
         });
         let world = world.unwrap().unwrap();
         assert_eq!(world.state(), "{\"t\":1}");
