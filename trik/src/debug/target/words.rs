@@ -46,6 +46,7 @@ fn whole(text: &str) -> Option<&'static str> {
         "a program in JavaScript runs there: say its file NAME.js to join it" => {
             "там выполняется программа на JavaScript: назовите её файл NAME.js, чтобы подключиться"
         }
+        "nobody is in control" => "никто не управляет",
         "there is no such file" => "такого файла нет",
         "not a file" => "это не файл",
         news::NOT_PAIRED => {
@@ -56,7 +57,7 @@ fn whole(text: &str) -> Option<&'static str> {
 }
 
 /// Sentences with names and numbers, which stand for `{}`, in English and Russian; the first that fits counts.
-const TEMPLATES: [[&str; 2]; 35] = [
+const TEMPLATES: [[&str; 2]; 34] = [
     ["{} is not changed: {}", "{} не изменена: {}"],
     ["{} is changed: {}", "{} изменена: {}"],
     ["{} has started", "{} запущена"],
@@ -93,7 +94,6 @@ const TEMPLATES: [[&str; 2]; 35] = [
         "{} was stopped by {} after {} s",
         "{} остановлена: {}; через {} с",
     ],
-    ["nobody is in control", "никто не управляет"],
     ["{} is in control", "управляет {}"],
     [
         "{} runs; a new version has the name of the diagram that runs",
