@@ -224,9 +224,10 @@ fn runs_programs(client: &mut Client, reachable: &Reachable) {
     });
     // What programs do is a channel as soon as there is some of it.
     client.order("subscribe /diagram");
-    client.tells(&[r#""topic":"/diagram""#, r#"\"n\""#]);
+    client.tells(&[r#""topic":"/diagram""#]);
     client.order("set diagram/n 7");
     client.tells(&[r#""id":"told""#, r#"{"name":"diagram/n","value":7}"#]);
+    client.tells(&[r#""topic":"/diagram""#, r#"\"n\""#]);
     client.order("subscribe /programs");
     client.order("call /stop");
     client.tells(&[r#""what":"done""#]);
