@@ -13,6 +13,7 @@ use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::Registry;
 use recorder::entry::{Entry, Known};
+use recorder::errno::LEFT;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
@@ -65,6 +66,8 @@ impl Numbers {
                         seen.values = numbers.iter().map(|number| number.to_f64()).collect();
                     }
                 }
+                // It was taken out of the configuration.
+                Entry::Fault(known, _, LEFT, _) => drop(self.nodes.remove(&known.node.path)),
                 Entry::Fault(known, at_ns, errno, _) => {
                     self.know(known);
                     let Some(seen) = self.nodes.get_mut(&known.node.path) else {

@@ -43,6 +43,11 @@ const BYTES: &str = "bytes";
 /// What the topics of bytes of sources begin with.
 const RAW: &str = "raw/";
 
+/// The node whose source is called so where failures are told; None: it is none of a source.
+pub(crate) fn raw_path(name: &str) -> Option<&str> {
+    name.strip_prefix(RAW)
+}
+
 impl Node {
     /// A sensor of this path and format, of which nothing else is known.
     pub fn sensor(path: &str, format: &str) -> Self {

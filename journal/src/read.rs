@@ -405,8 +405,9 @@ impl<F: Read + Seek> Reader<F> {
             Some(Carries::Faults) => {
                 let fault = Log::decode(data)
                     .ok_or_else(|| Error::Damaged("a message of faults is none".to_owned()))?;
-                let of = |path: &String| Node::raw(path, 1).name() == fault.name;
-                let Some(raw) = self.raws.iter().position(of) else {
+                let of = node::raw_path(&fault.name);
+                let of = of.and_then(|of| self.raws.iter().position(|path| path == of));
+                let Some(raw) = of else {
                     return Ok(None);
                 };
                 let errno = i32::try_from(fault.errno).unwrap_or(i32::MAX);

@@ -39,7 +39,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use tokio::sync::Semaphore;
 
 pub use member::{Found, Member, OwnPage, Whereabouts};
-pub use robot::EXPLAINED;
+pub use robot::{EXPLAINED, STARTED};
+pub use upload::REFUSALS;
 
 /// The path of the page, by which it knows that it is this one.
 const PATH: &str = "/class";
@@ -88,7 +89,8 @@ impl ClassPage {
                 name,
                 board,
                 guests,
-                browsers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+                viewers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+                commanders: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
                 uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
                 number: AtomicUsize::new(0),
             });
@@ -135,7 +137,13 @@ async fn socket(
     Query(query): Query<HashMap<String, String>>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    let Ok(seat) = class.browsers.clone().try_acquire_owned() else {
+    let may_drive = class.guests.may_drive(address.ip());
+    // Those who only look take no place from a person who stops the robots.
+    let seats = match may_drive {
+        true => &class.commanders,
+        false => &class.viewers,
+    };
+    let Ok(seat) = seats.clone().try_acquire_owned() else {
         let most = limits::BROWSERS_MAX;
         let why = format!("{most} browsers look already: close some, or wait");
         return text(StatusCode::SERVICE_UNAVAILABLE, why);
@@ -143,7 +151,7 @@ async fn socket(
     let locale = locale(&query);
     let number = class.number.fetch_add(1, Ordering::Relaxed);
     let who = Browser { number, address };
-    let most = match class.guests.may_drive(address.ip()) {
+    let most = match may_drive {
         true => limits::MESSAGE_BYTES_MAX,
         false => limits::WORDS_BYTES_MAX,
     };

@@ -23,7 +23,7 @@
 pub mod clock;
 pub mod desk;
 pub mod entry;
-mod errno;
+pub mod errno;
 pub mod error;
 pub mod file;
 pub mod kept;

@@ -52,12 +52,10 @@ pub const ZONE_BYTES_MAX: usize = 15;
 pub const ADDRESSES_MAX: usize = 8;
 /// Robots that are talked to at once.
 pub const FLEET_MAX: usize = 64;
-/// Robots that are found in the network.
-pub const FOUND_MAX: usize = 256;
 /// Answers that are looked at for that: who answers again and again is no reason to look for ever.
 pub const FOUND_EVENTS_MAX: usize = 10_000;
-/// Letters of the name of one that is found.
-pub const FOUND_LETTERS_MAX: usize = 40;
+/// Bytes of the name of a robot that is found, a multiple of three; a number behind it fits into the name of a class.
+pub const FOUND_NAME_BYTES_MAX: usize = 57;
 /// Bytes of a file that names the robots of a class.
 pub const CLASS_BYTES_MAX: u64 = 64 << 10;
 /// Bytes of the name of one of them, and of a group.
@@ -232,8 +230,9 @@ pub const TRANSLATED_BYTES_MAX: usize = 1000;
 pub const DAP_SOURCES_MAX: usize = 1000;
 /// Who is heard in one turn where a program in Python is awaited: as many as the system lets wait.
 pub const RELAY_COMERS: usize = 128;
-/// Who may connect at once to where a program in Python is awaited, before it is known who they are.
-pub const RELAY_UNKNOWN_MAX: usize = 8;
+/// Who may connect at once to where a program in Python is awaited, before it is known who they are: more than come in one
+/// turn, so that those do not turn out the program before it has said its secret.
+pub const RELAY_UNKNOWN_MAX: usize = 2 * RELAY_COMERS;
 /// Events of a robot that wait for the debugger; the oldest are lost.
 pub const DEBUG_EVENTS_MAX: usize = 10_000;
 /// Threads, and variables, that `trik watch` shows.
@@ -294,6 +293,9 @@ pub(crate) const FILES_TOLD: usize = 20;
 pub(crate) const STORIES: usize = 1_024;
 /// When a robot is asked again that did not tell of its programs.
 pub(crate) const STORIES_AGAIN_MS: u64 = 2_000;
+/// Bytes of texts and pictures after which rows of a table are written.
+#[cfg(feature = "parquet")]
+pub(crate) const TABLE_GROUP_BYTES: usize = 32 << 20;
 /// Cells of a table in Parquet that are in memory, and rows.
 #[cfg(feature = "parquet")]
 pub(crate) const TABLE_CELLS: usize = 4 << 20;

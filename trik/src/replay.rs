@@ -35,12 +35,10 @@ use order::Order;
 use player::{Begin, CONTROL, Player, SOCKET};
 use recording::Recording;
 use std::ffi::OsString;
-use std::path::Path;
+use std::os::fd::AsRawFd;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use world::RecordedWorld;
-
-/// The name of what another configuration makes of a recording.
-const ANEW: &str = "anew.mcap";
 
 /// Replays until somebody stops it.
 ///
@@ -96,8 +94,8 @@ fn differ(args: &ReplayArgs, config: &Path) -> Result<bool, Refusal> {
     Ok(report.is_same)
 }
 
-/// What is played: the recording, or what another configuration makes of it, which is in this folder until it is open.
-fn played(args: &ReplayArgs, folder: &Path) -> Result<FileRecording, Error> {
+/// What is played: the recording, or what another configuration makes of it, which is in a file without a name.
+fn played(args: &ReplayArgs) -> Result<FileRecording, Error> {
     let Some(config) = &args.config else {
         return FileRecording::open(&args.file);
     };
@@ -107,12 +105,16 @@ fn played(args: &ReplayArgs, folder: &Path) -> Result<FileRecording, Error> {
         include: &args.include,
         only: &[],
     })?;
-    let made = folder.join(ANEW);
-    let _ = std::fs::remove_file(&made);
-    let opened = tape::write(&mut run, &made).and_then(|()| FileRecording::open(&made));
-    // An open file stays.
-    let _ = std::fs::remove_file(&made);
-    opened
+    let folder = std::env::temp_dir();
+    let file = tempfile::tempfile_in(&folder).map_err(|why| Error::file(&folder, why))?;
+    // A file without a name has this one.
+    let made = PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()));
+    tape::write(
+        &mut run,
+        file.try_clone().map_err(|why| Error::file(&folder, why))?,
+        &folder,
+    )?;
+    FileRecording::open(&made)
 }
 
 /// True if nothing differs from the recording.
@@ -129,6 +131,8 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         let why = format!("the recording has {} only", words::time(length));
         return Err(Error::file(&args.file, why));
     }
+    // A long one takes its time, in which Ctrl-C ends all.
+    let recording = played(args)?;
     // Before the player has a thread, so that these come to the main thread alone.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
@@ -139,7 +143,6 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
     };
     std::fs::create_dir_all(&place.board).map_err(|why| Error::file(&place.board, why))?;
     let _board = Board(&place.board);
-    let recording = played(args, &place.board)?;
     let text = tree::configuration(recording.channels(), &place.board.join(SOCKET));
     std::fs::write(&place.world, text).map_err(|why| Error::file(&place.world, why))?;
     let hints = hints(recording.channels());

@@ -289,7 +289,9 @@ impl Supervisor {
             }
         }
         if let Some(path) = &path {
-            around.record.program(path, language);
+            around
+                .record
+                .program(&around.settings.scripts, path, language);
         }
         let is_quiet = path.is_none();
         self.last = language;

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::log;
 use crate::program::child::Language;
+use crate::scripts;
 use crate::settings::Settings;
 use journal::standard::Level;
 use journal::write::Story;
@@ -14,7 +15,6 @@ use recorder::desk::{Desk, Listener};
 use recorder::kept::{self, SaveReason};
 use std::cell::Cell;
 use std::fmt;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -80,15 +80,13 @@ impl Record {
         }
     }
 
-    /// A program in this file starts. One that is too large for a recording is left out, and so is one that cannot be read,
-    /// of which its start says more.
-    pub fn program(&self, path: &Path, language: Language) {
-        let (Some(name), Ok(file)) = (path.file_name(), File::open(path)) else {
+    /// A program in this file of the folder of programs starts. One that is too large for a recording is left out, and so is
+    /// one that cannot be read, of which its start says more. Programs may write to the folder, and this is read with the
+    /// rights of the daemon.
+    pub fn program(&self, folder: &Path, path: &Path, language: Language) {
+        let (Some(name), Ok(Some(file))) = (path.file_name(), scripts::open(folder, path)) else {
             return;
         };
-        if !file.metadata().is_ok_and(|file| file.is_file()) {
-            return;
-        }
         let mut bytes = Vec::new();
         let most = limits::RECORDED_PROGRAM_BYTES;
         let read = file.take(most + 1).read_to_end(&mut bytes);

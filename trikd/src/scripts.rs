@@ -9,7 +9,7 @@ use std::fmt;
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::fd::AsRawFd;
-use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -267,6 +267,33 @@ pub fn find(folder: &Path, name: &[u8]) -> Result<PathBuf, Refusal> {
     Ok(path)
 }
 
+/// Opens a program below the folder to be read. None: it is no file, or a step to it is a link.
+///
+/// # Errors
+/// Those of the file system.
+pub fn open(folder: &Path, path: &Path) -> io::Result<Option<File>> {
+    let (Ok(_), Some(parent), Some(name)) =
+        (path.strip_prefix(folder), path.parent(), path.file_name())
+    else {
+        return Ok(None);
+    };
+    let Some(place) = enter(folder, parent)? else {
+        return Ok(None);
+    };
+    // A pipe would be waited for.
+    let opened = OpenOptions::new()
+        .read(true)
+        .custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK)
+        .open(inside(&place).join(name));
+    let file = match opened {
+        Err(error) if error.raw_os_error() == Some(libc::ELOOP) => return Ok(None),
+        opened => opened?,
+    };
+    let found = file.metadata()?;
+    // A file with a second name may be one of somebody else that a program has given a name here.
+    Ok((found.is_file() && found.nlink() == 1).then_some(file))
+}
+
 /// Replaces a file: a reader finds the old content or the new one, also after a power cut.
 ///
 /// # Errors
@@ -306,6 +333,35 @@ mod tests {
     fn an_ending_is_the_same_in_capital_letters() {
         let given = ["a.FLOW", "b/A.Qrs", "a", ".js"].map(|name| ending(Path::new(name)));
         assert_eq!(given, ["flow", "qrs", "", ""]);
+    }
+
+    #[test]
+    fn only_files_that_are_really_in_the_folder_are_opened_to_be_read() {
+        let home = tempdir().unwrap();
+        let folder = home.path().join("scripts");
+        fs::create_dir_all(folder.join("sub")).unwrap();
+        put(home.path(), "secret", "x");
+        put(&folder.join("sub"), "a.js", "1");
+        let is_open = |name: &str| {
+            let opened = open(&folder, &folder.join(name));
+            opened.is_ok_and(|file| file.is_some())
+        };
+        assert!(is_open("sub/a.js"));
+        std::os::unix::fs::symlink("../secret", folder.join("link.js")).unwrap();
+        std::os::unix::fs::symlink("..", folder.join("up")).unwrap();
+        fs::hard_link(home.path().join("secret"), folder.join("second.js")).unwrap();
+        nix::unistd::mkfifo(&folder.join("pipe.js"), nix::sys::stat::Mode::S_IRWXU).unwrap();
+        for name in [
+            "link.js",
+            "up/secret",
+            "second.js",
+            "pipe.js",
+            "sub",
+            "none.js",
+        ] {
+            assert!(!is_open(name), "{name}");
+        }
+        assert!(open(&folder, &home.path().join("secret")).is_ok_and(|file| file.is_none()));
     }
 
     #[test]

@@ -356,7 +356,11 @@ impl Client<'_> {
                 Message::Close(_) => return Err(Error::ConnectionClosed),
             };
             match request {
-                Ok(request) => self.perform(request),
+                Ok(request) => {
+                    self.perform(request);
+                    // It took as long as the robot wanted, and nobody could ask the client meanwhile.
+                    self.heard_at = Instant::now();
+                }
                 Err(Mistake::Arguments(service, call)) => {
                     let why = Mistake::Arguments(service, call).to_string();
                     self.say(protocol::call_failed(service, call, &why));

@@ -13,6 +13,7 @@ use crate::limits::CHANNELS_MAX;
 use journal::records::Record;
 use queue::{Queue, Sample, Watches};
 use recorder::entry::Entry;
+use recorder::errno::LEFT;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::os::unix::net::UnixStream;
@@ -98,6 +99,8 @@ impl Hub {
         let mut state = self.lock();
         for entry in entries {
             match entry {
+                // It was taken out of the configuration.
+                Entry::Fault(known, _, LEFT, _) => state.recover(&id_of(&known.node.path)),
                 Entry::Fault(known, _, errno, reason) => {
                     let text = format!("{}: {reason} (errno {errno})", known.node.path);
                     state.fault(&id_of(&known.node.path), Weight::Warning, text);

@@ -160,10 +160,9 @@ impl Robot {
         match &*snapshot {
             Some((at, all)) if at.elapsed() < SNAPSHOT_TIME => all.clone(),
             Some(_) | None => {
-                // What changes during the look is not in it.
-                let at = Instant::now();
                 let all = Arc::new(self.read());
-                *snapshot = Some((at, all.clone()));
+                // Those who waited for a slow robot share what it has said.
+                *snapshot = Some((Instant::now(), all.clone()));
                 all
             }
         }

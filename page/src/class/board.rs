@@ -58,6 +58,8 @@ pub struct Sending {
     pub name: String,
     /// Its size; 0: it was there already.
     pub bytes: usize,
+    /// It shall run.
+    pub runs: bool,
     /// How far it is.
     pub stage: Stage,
 }
@@ -197,17 +199,21 @@ impl Board {
         });
     }
 
-    /// Orders everything to rest. Files that are on their way to be run do not arrive.
+    /// Orders everything to rest. A file that is on its way to be run does not arrive; one that is only sent does.
     pub fn stop(&self, id: usize) {
         let Some(told) = self.commands.get(id) else {
             return;
         };
-        if let Some(upload) = held(&told.upload).take() {
+        let is_to_run = |card: &Card| card.sending.as_ref().is_some_and(|one| one.runs);
+        if self.with(id, is_to_run) == Some(true)
+            && let Some(upload) = held(&told.upload).take()
+        {
             upload.abort();
         }
         self.change(id, |card| {
             card.stop = Some(Stop::Asked(Instant::now()));
             if let Some(sending) = &mut card.sending
+                && sending.runs
                 && matches!(sending.stage, Stage::Sending(_) | Stage::Starts)
             {
                 sending.stage = Stage::Failed(Why::Stopped);
@@ -216,25 +222,29 @@ impl Board {
         told.stop.notify_one();
     }
 
-    /// Whether an order to stop is still to be given.
-    pub fn wants_stop(&self, id: usize) -> bool {
+    /// When the order to stop was given that the robot is still to be told; None: there is none.
+    pub fn wanted_stop(&self, id: usize) -> Option<Instant> {
         let asked = |card: &Card| match card.stop {
             Some(Stop::Asked(since)) => Some(since),
             Some(Stop::Rests(_) | Stop::Failed(_) | Stop::Missed) | None => None,
         };
-        let Some(since) = self.with(id, asked).flatten() else {
-            return false;
-        };
+        let since = self.with(id, asked).flatten()?;
         if since.elapsed() <= limits::CLASS_STOP_TIME {
-            return true;
+            return Some(since);
         }
         // Somebody else may have begun something since.
         self.change(id, |card| card.stop = Some(Stop::Missed));
-        false
+        None
     }
 
     /// A file is on its way; one that was before it does not arrive.
-    pub fn begin(&self, id: usize, name: &str, bytes: usize, upload: Option<AbortHandle>) {
+    pub fn begin(
+        &self,
+        id: usize,
+        (name, bytes): (&str, usize),
+        runs: bool,
+        upload: Option<AbortHandle>,
+    ) {
         let Some(told) = self.commands.get(id) else {
             return;
         };
@@ -245,12 +255,22 @@ impl Board {
             card.sending = Some(Sending {
                 name: name.to_owned(),
                 bytes,
+                runs,
                 stage: match bytes {
                     0 => Stage::Starts,
                     _ => Stage::Sending(0),
                 },
             });
         });
+    }
+
+    /// Whether a file of this name is on its way.
+    pub fn is_sending(&self, id: usize, name: &str) -> bool {
+        let is_it = |card: &Card| {
+            let sending = card.sending.as_ref().filter(|one| one.name == name);
+            sending.is_some_and(|one| matches!(one.stage, Stage::Sending(_)))
+        };
+        self.with(id, is_it) == Some(true)
     }
 
     /// Nothing can be sent to a robot that is not reached.

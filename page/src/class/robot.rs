@@ -1,7 +1,7 @@
 //! The connection to one robot of a class: it comes back by itself, later and later while nobody is there.
 //!
-//! Owns the connection and what a robot's words mean for its card. A stop overtakes all else; files have connections of their
-//! own, so that none is in its way.
+//! Owns the connection and what a robot's words mean for its card. A stop overtakes all that was not sent yet; files have
+//! connections of their own, so that none is in its way.
 
 use super::board::{Board, Card, Reach, Stage, Stop};
 use super::member::{Found, Whereabouts};
@@ -9,37 +9,57 @@ use super::words::Why;
 use crate::error::plain;
 use crate::limits;
 use frame::{Decoder, encode};
+use futures_util::FutureExt;
 use std::io;
 use std::net::SocketAddr;
+use std::panic::AssertUnwindSafe;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::sync::{Notify, mpsc};
-use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep, timeout};
 
 /// How errors begin that say why not everything rests; others are those of a program.
-pub const EXPLAINED: [&str; 3] = [
+pub const EXPLAINED: [&str; 4] = [
     "there is no tree at ",
     "the tree at ",
     "not everything is at rest: ",
+    "the tree has not brought the motors to rest ",
 ];
+/// What a robot says of a program that has started, after its name.
+pub const STARTED: &str = " has started";
 
-/// Keeps the connection for ever.
+/// Keeps the connection for ever, also after a panic of this program.
 pub async fn run(board: Arc<Board>, id: usize, whereabouts: Arc<dyn Whereabouts>) {
     let Some(mut runs) = board.take_runs(id) else {
         return;
     };
+    loop {
+        let kept = AssertUnwindSafe(keep(&board, id, &whereabouts, &mut runs));
+        // It ends by a panic alone, which the terminal has.
+        let _ = kept.catch_unwind().await;
+        board.change(id, |card| lose(card, Why::Failed));
+        sleep(limits::CLASS_LATEST_TIME).await;
+    }
+}
+
+async fn keep(
+    board: &Board,
+    id: usize,
+    whereabouts: &Arc<dyn Whereabouts>,
+    runs: &mut mpsc::Receiver<String>,
+) {
     let mut wait = limits::CLASS_SOONEST_TIME;
     loop {
-        let why = match connect(&whereabouts).await {
+        let why = match connect(whereabouts).await {
             Ok((stream, found, at)) => {
                 board.change(id, |card| {
                     card.reach = Reach::There(at);
                     card.page = found.page;
                 });
-                let talk = Talk::new(&board, id);
-                let why = talk.run(stream, &mut runs).await;
+                let talk = Talk::new(board, id);
+                let why = talk.run(stream, runs).await;
                 // One that lets people in and says nothing is not asked more often for that.
                 if talk.has_answered() {
                     wait = limits::CLASS_SOONEST_TIME;
@@ -50,11 +70,11 @@ pub async fn run(board: Arc<Board>, id: usize, whereabouts: Arc<dyn Whereabouts>
         };
         board.change(id, |card| lose(card, why));
         // An order that was not answered stays for the next connection.
-        keep_stop(&board, id);
+        keep_stop(board, id);
         tokio::select! {
             () = sleep(wait) => wait = (wait * 2).min(limits::CLASS_LATEST_TIME),
             // A stop does not wait for that.
-            () = stopped(&board, id) => if keep_stop(&board, id) {
+            () = stopped(board, id) => if keep_stop(board, id) {
                 sleep(limits::CLASS_SOONEST_TIME).await;
             },
         }
@@ -70,7 +90,9 @@ async fn stopped(board: &Board, id: usize) {
 
 /// Whether a stop is still to be given, which is then said to who has the connection.
 fn keep_stop(board: &Board, id: usize) -> bool {
-    let told = board.commands(id).filter(|_| board.wants_stop(id));
+    let told = board
+        .commands(id)
+        .filter(|_| board.wanted_stop(id).is_some());
     if let Some(told) = told {
         told.stop.notify_one();
     }
@@ -131,8 +153,8 @@ struct Progress {
     /// How many `status` were asked and answered.
     asked: u64,
     answered: u64,
-    /// The one after a stop.
-    stop: Option<u64>,
+    /// The one after a stop, and when that was ordered.
+    stop: Option<(u64, Instant)>,
     /// The one after a start, and of which program.
     start: Option<(u64, String)>,
     /// Why not everything rests, said since the stop.
@@ -191,9 +213,9 @@ impl<'a> Talk<'a> {
                 biased;
                 () = told.stop.notified() => {
                     while runs.try_recv().is_ok() {}
-                    match self.board.wants_stop(self.id) {
-                        true => self.stop(),
-                        false => continue,
+                    match self.board.wanted_stop(self.id) {
+                        Some(ordered) => self.stop(ordered),
+                        None => continue,
                     }
                 }
                 Some(name) = runs.recv() => self.start(name),
@@ -213,10 +235,10 @@ impl<'a> Talk<'a> {
         encode(b"status")
     }
 
-    fn stop(&self) -> Vec<u8> {
+    fn stop(&self, ordered: Instant) -> Vec<u8> {
         let request = [encode(b"stop"), self.status()].concat();
         let mut progress = self.progress();
-        progress.stop = Some(progress.asked);
+        progress.stop = Some((progress.asked, ordered));
         progress.start = None;
         progress.unrest = None;
         request
@@ -260,7 +282,7 @@ impl<'a> Talk<'a> {
         if let Some(text) = says(b"status: ") {
             self.told(&text);
         } else if let Some(text) = says(b"info: ") {
-            if text.contains(" has started") {
+            if text.contains(STARTED) {
                 self.board.change(self.id, |card| card.error = None);
             }
             self.news.notify_one();
@@ -282,9 +304,11 @@ impl<'a> Talk<'a> {
             let mut progress = self.progress();
             progress.answered += 1;
             let answered = progress.answered;
-            if progress.stop.is_some_and(|due| due <= answered) {
+            if let Some((due, ordered)) = progress.stop
+                && due <= answered
+            {
                 progress.stop = None;
-                stopped = Some(progress.unrest.take());
+                stopped = Some((progress.unrest.take(), ordered));
             }
             if progress
                 .start
@@ -295,7 +319,10 @@ impl<'a> Talk<'a> {
             }
         }
         self.board.change(self.id, |card| {
-            if let (Some(unrest), Some(Stop::Asked(since))) = (stopped, &card.stop) {
+            // One that was ordered again meanwhile is still to be given.
+            if let (Some((unrest, ordered)), Some(Stop::Asked(since))) = (stopped, &card.stop)
+                && ordered == *since
+            {
                 let ms = u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX);
                 card.stop = Some(unrest.map_or(Stop::Rests(ms), Stop::Failed));
             }
@@ -354,5 +381,34 @@ mod tests {
         assert_eq!(short("first\n\u{1b}[2Jlast\n"), "[2Jlast");
         assert_eq!(short(&"x".repeat(100_000)).len(), limits::CLASS_LETTERS_MAX);
         assert_eq!(short(""), "");
+    }
+
+    struct Nowhere;
+
+    impl Whereabouts for Nowhere {
+        fn find(&self) -> Result<Found, lang_text::problem::Words> {
+            Err(lang_text::problem::Words::new("nowhere", "nowhere"))
+        }
+    }
+
+    #[test]
+    fn the_answer_to_a_stop_is_none_to_a_later_one() {
+        let board = Board::new(&[super::super::Member {
+            name: "r".to_owned(),
+            group: String::new(),
+            at: String::new(),
+            whereabouts: Arc::new(Nowhere),
+        }]);
+        let talk = Talk::new(&board, 0);
+        let is_asked = || board.with(0, |card| matches!(card.stop, Some(Stop::Asked(_))));
+        board.stop(0);
+        talk.stop(board.wanted_stop(0).unwrap());
+        // The first is answered when the second was ordered and not sent.
+        board.stop(0);
+        talk.told("program none\n");
+        assert_eq!(is_asked(), Some(true));
+        talk.stop(board.wanted_stop(0).unwrap());
+        talk.told("program none\n");
+        assert_eq!(is_asked(), Some(false));
     }
 }

@@ -13,7 +13,10 @@ pub struct Class {
     pub name: String,
     pub board: Arc<Board>,
     pub guests: Arc<dyn Guests>,
-    pub browsers: Arc<Semaphore>,
+    /// Places of browsers that only look.
+    pub viewers: Arc<Semaphore>,
+    /// Places of those that may command.
+    pub commanders: Arc<Semaphore>,
     /// Bytes of files that are on their way.
     pub uploads: Arc<Semaphore>,
     pub number: AtomicUsize,

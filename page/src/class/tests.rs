@@ -25,6 +25,8 @@ struct FakeState {
     heard: Mutex<Vec<String>>,
     /// It takes connections and answers nothing.
     is_deaf: AtomicBool,
+    /// What it says of a stop; empty: everything rests.
+    unrest: Mutex<String>,
     connections: Mutex<Vec<TcpStream>>,
 }
 
@@ -96,6 +98,10 @@ impl FakeState {
         }
         if text == "version" {
             return vec!["version: 3.1.4".to_owned()];
+        }
+        let unrest = self.unrest.lock().unwrap().clone();
+        if text == "stop" && !unrest.is_empty() {
+            return vec![format!("error: {unrest}")];
         }
         if text == "stop" {
             let ended = std::mem::take(&mut *runs);
@@ -315,6 +321,71 @@ fn a_stop_reaches_all_and_waits_for_one_that_is_gone() {
         .order(r#"{"do":"run","robots":[0],"name":"a.js"}"#);
     viewer.until("it runs", |cards| cards[0]["runs"] == "a.js");
     assert!(viewer.cards[0]["stop"].is_null());
+}
+
+#[test]
+fn a_robot_that_says_that_something_does_not_rest_is_not_at_rest() {
+    let robot = Fake::new();
+    let page = page(&[Some(robot.at)], Arc::new(Everybody));
+    let mut viewer = Viewer::of(&page);
+    viewer.until("it is there", |cards| cards[0]["reach"] == "there");
+    for start in EXPLAINED {
+        let why = format!("{start}x");
+        robot.state.unrest.lock().unwrap().clone_from(&why);
+        viewer.socket.order(r#"{"do":"stop","robots":[0]}"#);
+        viewer.until(&why, |cards| {
+            cards[0]["stop"]["is"] == "failed" && cards[0]["stop"]["why"] == why
+        });
+    }
+    robot.state.unrest.lock().unwrap().clear();
+    viewer.socket.order(r#"{"do":"stop","robots":[0]}"#);
+    viewer.until("it rests", |cards| cards[0]["stop"]["is"] == "rests");
+}
+
+#[test]
+fn a_file_that_is_on_its_way_is_not_run_before_it_is_there() {
+    let robot = Fake::new();
+    let page = page(&[Some(robot.at)], Arc::new(Everybody));
+    let mut viewer = Viewer::of(&page);
+    viewer.until("it is there", |cards| cards[0]["reach"] == "there");
+    robot.state.is_deaf.store(true, Ordering::Relaxed);
+    viewer.send("[0]", "a.js", false);
+    viewer.until("it is on its way", |cards| {
+        cards[0]["sending"]["is"] == "sending"
+    });
+    let run = r#"{"do":"run","robots":[0],"name":"a.js"}"#;
+    viewer.socket.order(run);
+    let why = viewer.socket.until("\"refused\"");
+    assert!(why.contains("files are on their way"), "{why}");
+}
+
+/// Others look; whether this computer may do something is told.
+struct Sometimes(AtomicBool);
+
+impl Guests for Sometimes {
+    fn may_look(&self, _: IpAddr) -> bool {
+        true
+    }
+
+    fn may_drive(&self, _: IpAddr) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    fn asks(&self, _: IpAddr) {}
+}
+
+#[test]
+fn those_who_only_look_take_no_place_from_who_commands() {
+    let guests = Arc::new(Sometimes(AtomicBool::new(false)));
+    let page = page(&[None], guests.clone());
+    let all: Vec<_> = (0..limits::BROWSERS_MAX)
+        .map(|_| Viewer::of(&page))
+        .collect();
+    let refused = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| Viewer::of(&page)));
+    assert!(refused.is_err(), "there is no more place to look");
+    guests.0.store(true, Ordering::Relaxed);
+    drop(Viewer::of(&page));
+    drop(all);
 }
 
 /// Others look, and may do nothing.

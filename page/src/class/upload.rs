@@ -18,7 +18,7 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::timeout;
 
 /// How errors about a file begin, or about its sender; others are those of a program.
-const REFUSALS: [&str; 2] = ["the upload failed: ", "this computer is not paired "];
+pub const REFUSALS: [&str; 2] = ["the upload failed: ", "this computer is not paired "];
 
 /// A file for several robots.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub struct Parcel {
 /// Sends it to the robot that takes programs there.
 pub async fn run(board: Arc<Board>, id: usize, at: SocketAddr, parcel: Arc<Parcel>) {
     let sent = timeout(limits::CLASS_UPLOAD_TIME, send(&board, id, at, &parcel)).await;
-    match sent.unwrap_or(Err(Why::Silent)) {
+    match sent.unwrap_or(Err(Why::Slow)) {
         Ok(()) if parcel.runs => board.run(id, &parcel.name),
         Ok(()) => board.stage(id, &parcel.name, Stage::Sent),
         Err(why) => board.stage(id, &parcel.name, Stage::Failed(why)),
@@ -43,11 +43,10 @@ pub async fn run(board: Arc<Board>, id: usize, at: SocketAddr, parcel: Arc<Parce
 
 async fn send(board: &Board, id: usize, at: SocketAddr, parcel: &Parcel) -> Result<(), Why> {
     let (mut read, mut write) = open(at).await?.into_split();
-    let mut wrote = false;
     tokio::select! {
         answer = answer(&mut read, &parcel.name) => answer,
         // It ends only by a failure, and why the robot takes no more it may have said before.
-        why = write_all(board, id, parcel, &mut write, &mut wrote) => {
+        why = write_all(board, id, parcel, &mut write) => {
             match timeout(limits::RETURN_TIME, answer(&mut read, &parcel.name)).await {
                 Ok(Err(said @ Why::Said(_))) => Err(said),
                 Ok(_) | Err(_) => Err(why),
@@ -57,25 +56,16 @@ async fn send(board: &Board, id: usize, at: SocketAddr, parcel: &Parcel) -> Resu
 }
 
 /// Writes the file, and then what keeps the connection.
-async fn write_all(
-    board: &Board,
-    id: usize,
-    parcel: &Parcel,
-    write: &mut OwnedWriteHalf,
-    wrote: &mut bool,
-) -> Why {
+async fn write_all(board: &Board, id: usize, parcel: &Parcel, write: &mut OwnedWriteHalf) -> Why {
     let head = format!("file:{}:", parcel.name);
     let size = head.len() + parcel.content.len();
+    if let Err(error) = write.write_all(format!("{size}:{head}").as_bytes()).await {
+        return Why::System(plain(&error));
+    }
     let mut done = 0;
-    let beginning = format!("{size}:{head}").into_bytes();
-    let pieces =
-        std::iter::once(&beginning[..]).chain(parcel.content.chunks(limits::CLASS_PIECE_BYTES));
-    for piece in pieces {
+    for piece in parcel.content.chunks(limits::CLASS_PIECE_BYTES) {
         if let Err(error) = write.write_all(piece).await {
             return Why::System(plain(&error));
-        }
-        if !std::mem::replace(wrote, true) {
-            continue;
         }
         done += piece.len();
         board.stage(id, &parcel.name, Stage::Sending(done));

@@ -43,7 +43,7 @@ async fn listen(
             Message::Close(_) => return,
         };
         if let Err(why) = done {
-            // Who says nothing but rubbish is not told of each.
+            // A browser that says nothing but rubbish is not told of each.
             let _ = refusals.try_send(why);
         }
     }
@@ -62,8 +62,12 @@ fn obey(class: &Class, text: &str) -> Result<(), Refused> {
     match Order::parse(text, board.titles.len())? {
         Order::Stop(robots) => robots.into_iter().for_each(|id| board.stop(id)),
         Order::Run(robots, name) => {
+            // The robot would run what it had before.
+            if robots.iter().any(|id| board.is_sending(*id, &name)) {
+                return Err(Refused::Busy);
+            }
             for id in robots {
-                board.begin(id, &name, 0, None);
+                board.begin(id, (&name, 0), true, None);
                 board.run(id, &name);
             }
         }
@@ -93,13 +97,14 @@ fn send(class: &Arc<Class>, message: &Bytes) -> Result<(), Refused> {
         });
         let name = parcel.name.clone();
         let Some(at) = at.flatten() else {
-            board.begin(id, &name, bytes, None);
+            board.begin(id, (&name, bytes), parcel.runs, None);
             board.away(id, &name);
             continue;
         };
         // It begins when this thread has done with the order, and then its card is there.
         let task = tokio::spawn(upload::run(board.clone(), id, at, parcel.clone()));
-        board.begin(id, &name, bytes, Some(task.abort_handle()));
+        let upload = Some(task.abort_handle());
+        board.begin(id, (&name, bytes), parcel.runs, upload);
     }
     Ok(())
 }

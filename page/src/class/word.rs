@@ -276,6 +276,7 @@ mod tests {
             sending: Some(Sending {
                 name: "a.py".to_owned(),
                 bytes: 7,
+                runs: true,
                 stage: Stage::Failed(Why::Stopped),
             }),
         };

@@ -20,6 +20,8 @@ pub enum Why {
     NoWay(SocketAddr),
     /// It was there and says nothing.
     Silent,
+    /// The file takes too long.
+    Slow,
     /// It has closed the connection.
     Closed,
     /// It does not speak as robots do.
@@ -79,6 +81,13 @@ impl Why {
                 format!("it has said nothing for {seconds} s"),
                 format!("робот молчит уже {seconds} с"),
             ),
+            Self::Slow => {
+                let seconds = limits::CLASS_UPLOAD_TIME.as_secs();
+                Words::new(
+                    format!("the file was not there after {seconds} s"),
+                    format!("файл не дошёл за {seconds} с"),
+                )
+            }
             Self::Closed => Words::new(
                 "the robot has closed the connection",
                 "робот закрыл соединение",
@@ -112,7 +121,7 @@ pub enum Refused {
     Name,
     /// The file is empty.
     Empty,
-    /// Other files are on their way.
+    /// Files are on their way.
     Busy,
     /// No robot is chosen.
     Nobody,
@@ -133,8 +142,8 @@ impl Refused {
             ),
             Self::Empty => Words::new("the file is empty", "файл пуст"),
             Self::Busy => Words::new(
-                "other files are on their way: wait until they have arrived",
-                "отправляются другие файлы: подождите, пока они дойдут",
+                "files are on their way: wait until they have arrived",
+                "файлы ещё отправляются: подождите, пока они дойдут",
             ),
             Self::Nobody => Words::new("no robot is chosen", "не выбран ни один робот"),
         }
@@ -155,6 +164,7 @@ mod tests {
             Why::NoAnswer(at),
             Why::NoWay(at),
             Why::Silent,
+            Why::Slow,
             Why::Closed,
             Why::NoRobot("x".to_owned()),
             Why::Away,

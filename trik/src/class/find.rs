@@ -9,7 +9,7 @@ use crate::limits;
 use crate::output::standard;
 use crate::refusal::Refusal;
 use mdns_sd::{IfKind, ResolvedService, ServiceDaemon, ServiceEvent};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
@@ -41,7 +41,7 @@ pub(super) fn find(args: &FindArgs) -> Result<u8, Refusal> {
     let end = Instant::now() + Duration::from_secs(args.seconds.into());
     let mut all: BTreeMap<String, Answer> = BTreeMap::new();
     let mut heard = 0;
-    while heard < limits::FOUND_EVENTS_MAX && all.len() < limits::FOUND_MAX {
+    while heard < limits::FOUND_EVENTS_MAX && all.len() < limits::FLEET_MAX {
         let Ok(event) = events.recv_timeout(end.saturating_duration_since(Instant::now())) else {
             break;
         };
@@ -70,6 +70,9 @@ fn answer(service: &ResolvedService) -> Option<Answer> {
         .into_iter()
         .map(IpAddr::V4)
         .find(|ip| !ip.is_unspecified() && !ip.is_multicast())?;
+    if service.get_port() == 0 {
+        return None;
+    }
     let page = service.get_property_val_str("page");
     let full = service.get_fullname();
     let name = full.strip_suffix(SERVICE).unwrap_or(full);
@@ -85,14 +88,16 @@ fn answer(service: &ResolvedService) -> Option<Answer> {
     })
 }
 
-/// A name of a stranger as a word of a file of a class.
+/// A name of a stranger as a word of a file of a class; there is room for a number behind it.
 fn name_of(text: &str) -> String {
     let fits = |c: char| c.is_alphanumeric() || "-_.".contains(c);
-    let name: String = text
-        .chars()
-        .map(|c| if fits(c) { c } else { '-' })
-        .take(limits::FOUND_LETTERS_MAX)
-        .collect();
+    let mut name = String::new();
+    for c in text.chars().map(|c| if fits(c) { c } else { '-' }) {
+        if name.len() + c.len_utf8() > limits::FOUND_NAME_BYTES_MAX {
+            break;
+        }
+        name.push(c);
+    }
     match name.is_empty() {
         true => "robot".to_owned(),
         false => name,
@@ -102,14 +107,14 @@ fn name_of(text: &str) -> String {
 /// A line for each, in columns; a name that several have gets a number.
 fn text(all: impl Iterator<Item = Answer>) -> String {
     let mut lines = Vec::new();
-    let mut names: BTreeMap<String, usize> = BTreeMap::new();
+    let mut names = BTreeSet::new();
     for answer in all {
-        let count = names.entry(answer.name.clone()).or_insert(0);
-        *count += 1;
-        let name = match *count {
-            1 => answer.name,
-            number => format!("{}-{number}", answer.name),
-        };
+        let mut name = answer.name.clone();
+        let mut number = 1;
+        while !names.insert(name.clone()) {
+            number += 1;
+            name = format!("{}-{number}", answer.name);
+        }
         let page = answer
             .page
             .map_or_else(String::new, |port| format!("  page={port}"));
@@ -138,7 +143,10 @@ mod tests {
         ] {
             assert_eq!(name_of(text), name);
         }
-        assert_eq!(name_of(&"x".repeat(1000)).len(), limits::FOUND_LETTERS_MAX);
+        for letter in ["x", "\u{65e5}"] {
+            let name = name_of(&letter.repeat(1000));
+            assert_eq!(name.len(), limits::FOUND_NAME_BYTES_MAX / 3 * 3);
+        }
     }
 
     #[test]
@@ -151,12 +159,12 @@ mod tests {
         let all = [
             answer("trik", "192.168.77.1", Some(8000)),
             answer("trik", "192.168.77.2:9", None),
-            answer("a", "192.168.77.3", None),
+            answer("trik-2", "192.168.77.3", None),
         ];
         let told = text(all.into_iter());
         assert_eq!(
             told,
-            "trik    192.168.77.1  page=8000\ntrik-2  192.168.77.2:9\na       192.168.77.3\n"
+            "trik      192.168.77.1  page=8000\ntrik-2    192.168.77.2:9\ntrik-2-2  192.168.77.3\n"
         );
         let home = tempfile::tempdir().expect("a directory");
         let file = home.path().join("found.txt");

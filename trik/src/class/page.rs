@@ -13,7 +13,7 @@ use lang_text::problem::Words;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use page::Guests;
 use page::class::{ClassPage, ClassSettings, Found, Member, OwnPage, Whereabouts};
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::os::fd::AsFd;
 use std::sync::Arc;
 
@@ -28,11 +28,18 @@ impl Guests for Teacher {
         true
     }
 
+    /// A browser of this computer comes from an address of this computer, whichever it has opened the page by.
     fn may_drive(&self, ip: IpAddr) -> bool {
-        ip.to_canonical().is_loopback()
+        let ip = ip.to_canonical();
+        ip.is_loopback() || is_own(ip)
     }
 
     fn asks(&self, _: IpAddr) {}
+}
+
+/// Whether this computer has the address: nobody else's can be bound.
+fn is_own(ip: IpAddr) -> bool {
+    !ip.is_unspecified() && !ip.is_multicast() && UdpSocket::bind((ip, 0)).is_ok()
 }
 
 impl Whereabouts for Robot {
@@ -111,20 +118,30 @@ mod tests {
             ("127.0.0.1", true),
             ("::1", true),
             ("::ffff:127.0.0.1", true),
-            ("192.168.77.5", false),
+            // Of documents, nobody's (RFC 5737).
+            ("192.0.2.5", false),
+            ("0.0.0.0", false),
+            ("224.0.0.251", false),
         ] {
             assert_eq!(Teacher.may_drive(ip(text)), may, "{text}");
             assert!(Teacher.may_look(ip(text)));
         }
+        // The address by which this computer reaches others, if it has a network.
+        let out = UdpSocket::bind("0.0.0.0:0").expect("a socket");
+        if out.connect("192.0.2.1:9").is_ok() {
+            let own = out.local_addr().expect("an address").ip();
+            assert!(Teacher.may_drive(own), "{own}");
+        }
     }
 
     #[test]
-    fn words_of_a_robot_that_does_not_rest_are_the_same_on_both_sides() {
-        for start in page::class::EXPLAINED {
-            assert!(
-                trikd::program::rest::is_explained(&format!("{start}x")),
-                "{start}"
-            );
-        }
+    fn words_of_a_robot_are_the_same_on_both_sides() {
+        use page::class::{EXPLAINED, REFUSALS, STARTED};
+        use trikd::protocol::news;
+        assert_eq!(EXPLAINED, trikd::program::rest::EXPLAINED);
+        let [upload, pairing] = REFUSALS;
+        assert_eq!(upload, news::UPLOAD_FAILED);
+        assert!(news::NOT_PAIRED.starts_with(pairing), "{pairing}");
+        assert_eq!(news::started("a.js"), format!("a.js{STARTED}"));
     }
 }

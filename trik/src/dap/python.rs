@@ -145,6 +145,8 @@ struct Session<'a> {
     is_held: bool,
     /// What goes on is one thread, by a step that the editor wants so.
     goes_alone: bool,
+    /// The request for which motors go on already, while debugpy has not answered it.
+    going: Option<u64>,
     /// How often they were.
     stops: u64,
     /// Since when some of them are known not to.
@@ -179,6 +181,7 @@ impl<'a> Session<'a> {
             is_begun: false,
             is_held: false,
             goes_alone: false,
+            going: None,
             stops: 0,
             turning: None,
             errors: Vec::new(),
@@ -295,6 +298,13 @@ impl<'a> Session<'a> {
             return self.answered(asked, &message);
         }
         self.memory.hear(&mut message);
+        if number.is_some() && number == self.going {
+            self.going = None;
+            // The program stands where it was.
+            if message["success"] != true && self.lost.is_none() {
+                self.hold();
+            }
+        }
         match message["event"].as_str() {
             Some("debugpyWaitingForServer") => {
                 let port = message["body"]["port"].as_u64();
@@ -325,8 +335,10 @@ impl<'a> Session<'a> {
             }
             // However it came to that; after a request of the editor motors go on already.
             Some("continued") => {
-                if self.goes_alone {
-                    message["body"]["allThreadsContinued"] = json!(false);
+                if self.goes_alone
+                    && let Some(body) = message.get_mut("body").and_then(Value::as_object_mut)
+                {
+                    body.insert("allThreadsContinued".to_owned(), json!(false));
                 }
                 self.client.pass(message);
                 if std::mem::take(&mut self.is_held) {
@@ -356,6 +368,10 @@ impl<'a> Session<'a> {
                 } else if self.again.is_some() {
                     self.robot.end();
                     self.tell_end_because(1, why);
+                    return None;
+                }
+                // The editor has ended a restart, which was answered then.
+                if self.memory.runs() > 0 {
                     return None;
                 }
                 let answer = match is_done {
@@ -487,7 +503,12 @@ impl<'a> Session<'a> {
                 self.refuse(&request, "a program in Python cannot be taken back");
             }
             "continue" | "next" | "stepIn" | "stepOut" | "goto" if self.is_held => {
+                if self.memory.has_ended(&request) {
+                    self.refuse(&request, "this thread has ended");
+                    return None;
+                }
                 (self.is_held, self.turning) = (false, None);
+                self.going = Some(request.seq());
                 let what = format!("_go_on({})", self.stops);
                 self.memory.note(&request);
                 self.in_program(&what, Asked::First(request, Instant::now()));

@@ -108,7 +108,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<u8, Refusal> {
     #[cfg(feature = "parquet")]
     if is_parquet {
         let out = fresh.file()?;
-        parquet::write(&mut opened, &columns, last, out, (&args.file, place))?;
+        parquet::write(&mut opened, columns, last, out, (&args.file, place))?;
         fresh.place()?;
         return Ok(0);
     }

@@ -151,6 +151,11 @@ fn robot(line: &str, folder: &Path) -> Result<Option<Robot>, Error> {
     let at = words
         .next()
         .ok_or_else(|| wrong(format!("'{name}' has no address: {FORM}")))?;
+    if at.chars().any(char::is_control) {
+        return Err(wrong(format!(
+            "the address of '{name}' has control characters"
+        )));
+    }
     let at = match is_path(at) {
         // Whether a robot is there is seen when somebody wants something of it.
         true => folder
@@ -254,6 +259,7 @@ mod tests {
             ("anna a page=x", "1: 'page=x': a port is"),
             ("a,b a", "1: a name has none of"),
             ("a\u{1b} a", "1: a name has none of"),
+            ("a /tmp/\u{1b}]0;x", "1: the address of 'a' has control"),
             ("a b r:d", "1: a name has none of"),
         ] {
             let told = told(text);

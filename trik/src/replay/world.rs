@@ -157,7 +157,8 @@ impl Tape {
     fn go(&mut self, position: Duration, shown: &mut Shown) -> Result<(), journal::error::Error> {
         let after = u64::try_from(position.as_nanos()).unwrap_or(u64::MAX);
         let now = self.reader.begin_ns().saturating_add(after);
-        let goes_on = |at| (at..=at + limits::REPLAY_WORLD_NEAR_NS).contains(&now);
+        let goes_on =
+            |at: u64| (at..=at.saturating_add(limits::REPLAY_WORLD_NEAR_NS)).contains(&now);
         if self.at_ns.is_some_and(|at| at == now) {
             return Ok(());
         }

@@ -123,14 +123,17 @@ fn serve(root: &Path, asked: &Receiver<Answer>) {
     }
 }
 
-/// Whether a text is one of [`Failure::of`]: after a stop something may still move.
+/// How the sentences of [`Failure`] begin. Those who hear a robot know by them that something may still move.
+pub const EXPLAINED: [&str; 4] = [
+    "there is no tree at ",
+    "the tree at ",
+    "not everything is at rest: ",
+    "the tree has not brought the motors to rest ",
+];
+
+/// Whether a text is that of a [`Failure`]: after a stop something may still move.
 pub fn is_explained(text: &str) -> bool {
-    let beginnings = [
-        "there is no tree at ",
-        "the tree at ",
-        "not everything is at rest: ",
-    ];
-    beginnings.iter().any(|start| text.starts_with(start))
+    EXPLAINED.iter().any(|start| text.starts_with(start))
 }
 
 #[cfg(test)]
@@ -146,6 +149,8 @@ mod tests {
             let text = Failure::of(Path::new("/t"), error).to_string();
             assert!(is_explained(&text), "{text}");
         }
+        let late = Failure::Late(2000).to_string();
+        assert!(is_explained(&late), "{late}");
         let absent = Failure::of(Path::new("/t"), io::Error::from_raw_os_error(libc::ENODEV));
         let text = absent.to_string();
         assert!(

@@ -7,10 +7,15 @@ use crate::errno::{Blame, Error};
 use crate::events::lock;
 use crate::sample_bus::Ring;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the source gives before it is converted, in shared memory.
 #[derive(Default)]
-pub(super) struct Tap(Mutex<Tapped>);
+pub(super) struct Tap {
+    tapped: Mutex<Tapped>,
+    /// It has a ring. Samples of all others pay no more than a look at this.
+    has_ring: AtomicBool,
+}
 
 #[derive(Default)]
 struct Tapped {
@@ -28,13 +33,18 @@ impl Tap {
             ring,
             ..Tapped::default()
         };
+        let has_ring = fresh.ring.is_some();
         // Outside the lock: the end of a ring removes a file.
-        let _before = std::mem::replace(&mut *lock(&self.0), fresh);
+        let _before = std::mem::replace(&mut *lock(&self.tapped), fresh);
+        self.has_ring.store(has_ring, Ordering::Release);
     }
 
     /// Tuples that were converted at this moment; true: the last of them was refused.
     pub(super) fn publish(&self, tuples: &[u8], tuple_size: usize, is_refused: bool) {
-        let mut tapped = lock(&self.0);
+        if !self.has_ring.load(Ordering::Acquire) {
+            return;
+        }
+        let mut tapped = lock(&self.tapped);
         let Some(ring) = &mut tapped.ring else { return };
         for tuple in tuples.chunks_exact(tuple_size) {
             ring.publish(Stamp::now(), tuple);
@@ -45,7 +55,10 @@ impl Tap {
 
     /// What a converter says of good bytes is no failure of the source.
     pub(super) fn fail(&self, error: &Error) {
-        let mut tapped = lock(&self.0);
+        if !self.has_ring.load(Ordering::Acquire) {
+            return;
+        }
+        let mut tapped = lock(&self.tapped);
         let is_refused = std::mem::take(&mut tapped.is_refused);
         if is_refused || error.blame() == Blame::Converter || tapped.failure.as_ref() == Some(error)
         {

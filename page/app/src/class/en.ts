@@ -3,6 +3,7 @@
 import type { Mark, StopSum, Sum } from './sum';
 
 export const en = {
+  stopUnsent: 'The stop was not sent: the page is not connected to its server. Stop the robots themselves.',
   title: (name: string) => (name ? `${name} - TRIK class` : 'TRIK class'),
   stopAll: 'Stop all',
   stopHint: 'Everything on all robots to rest, their programs to their end (space bar)',
@@ -42,6 +43,8 @@ export const en = {
     name: 'A file of this name cannot be a program: it has a colon, a backslash or control characters.',
     size: 'The file is larger than 16 MiB, which is the most that a robot takes.',
     offline: 'The page is not connected to its server.',
+    unread: 'The file cannot be read any more: choose it again.',
+    stopped: 'Stop was pressed before it was sent.',
   },
 
   mark: {

@@ -30,7 +30,11 @@ export class Room {
   mayDrive = $state(false);
   refusal = $state('');
   /** Why the file was not taken. */
-  unsent = $state<'' | 'name' | 'size' | 'offline'>('');
+  unsent = $state<'' | 'name' | 'size' | 'offline' | 'unread' | 'stopped'>('');
+  /** A stop was pressed that the server has not got. */
+  hasMissedStop = $state(false);
+  /** How many were pressed: what was sent before the last one does not start after it. */
+  #stops = 0;
   readonly #link: Link<News, Order>;
 
   constructor(address: string) {
@@ -97,11 +101,16 @@ export class Room {
   }
 
   stopAll(): void {
-    this.#order({ do: 'stop', robots: [...this.titles.keys()] });
+    this.#stop([...this.titles.keys()]);
   }
 
   stopChosen(): void {
-    this.#order({ do: 'stop', robots: this.robots });
+    this.#stop(this.robots);
+  }
+
+  #stop(robots: number[]): void {
+    this.#stops += 1;
+    if (robots.length > 0) this.hasMissedStop = !this.#link.order({ do: 'stop', robots });
   }
 
   run(name: string): void {
@@ -115,7 +124,14 @@ export class Room {
     else {
       const head = JSON.stringify({ robots: this.robots, name: file.name, run });
       const line = new TextEncoder().encode(`${head}\n`);
-      const content = new Uint8Array(await file.arrayBuffer());
+      const stops = this.#stops;
+      // A file that was changed or taken away since it was chosen cannot be read.
+      const read = await file.arrayBuffer().catch(() => null);
+      if (!read || (run && stops !== this.#stops)) {
+        this.unsent = read ? 'stopped' : 'unread';
+        return false;
+      }
+      const content = new Uint8Array(read);
       const message = new Uint8Array(line.length + content.length);
       message.set(line);
       message.set(content, line.length);

@@ -57,31 +57,33 @@ impl OwnPort {
 }
 
 /// The adapter, which takes no connection but that of its one argument: it waits for a program at a port of this computer, and
-/// would take the first process of whichever user for it. Modules of the current directory are not found.
+/// would take the first process of whichever user for it.
 const ADAPTER: &str = "\
-import sys
-sys.path = [place for place in sys.path if place not in ('', '.')]
 import runpy, socket
 own = int(sys.argv.pop())
 accept = socket.socket.accept
 def accept_own(self):
     while True:
         peer, address = accept(self)
-        if address[1] == own:
+        if address == ('127.0.0.1', own):
             return peer, address
         peer.close()
 socket.socket.accept = accept_own
 runpy.run_module('debugpy.adapter', run_name='__main__', alter_sys=True)
 ";
 
-/// Modules of the current directory are not found by it: a file json.py beside a program would run on this computer. Pythons
-/// before 3.11 do not know the variable.
+/// Before all else: modules of the current directory are not found, where a file json.py beside a program would run on this
+/// computer.
+const SAFE_PATH: &str =
+    "import sys; sys.path = [place for place in sys.path if place not in ('', '.')]\n";
+
+/// The same for what it starts itself. Pythons before 3.11 do not know the variable.
 const SAFE: (&str, &str) = ("PYTHONSAFEPATH", "1");
 
 /// Whether this Python has debugpy, and what to type if it has not.
 fn must_have(python: &str) -> Result<(), Refused> {
     let asked = Command::new(python)
-        .args(["-c", "import debugpy"])
+        .args(["-c", &format!("{SAFE_PATH}import debugpy")])
         .env(SAFE.0, SAFE.1)
         .stdin(Stdio::null())
         .output();
@@ -106,7 +108,11 @@ impl Adapter {
         let no = |why: std::io::Error| Refused::new(format!("debugpy cannot be started: {why}"));
         let way = OwnPort::new().map_err(no)?;
         let mut process = Command::new(python)
-            .args(["-c", ADAPTER, &way.port.to_string()])
+            .args([
+                "-c",
+                &format!("{SAFE_PATH}{ADAPTER}"),
+                &way.port.to_string(),
+            ])
             .env(SAFE.0, SAFE.1)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

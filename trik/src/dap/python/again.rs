@@ -37,6 +37,8 @@ pub(super) struct Memory {
     /// Requests that debugpy has not answered.
     open: Vec<Request>,
     threads: BTreeSet<u64>,
+    /// Those that have ended.
+    ended: BTreeSet<u64>,
     /// Which of them was told to be stopped last.
     stopped: Option<u64>,
     /// How many programs there were before this one, and numbers of its breakpoints that have others for the editor.
@@ -66,22 +68,20 @@ impl Memory {
 
     /// What debugpy says, with the numbers that the editor knows.
     pub fn hear(&mut self, message: &mut Value) {
-        let body = &mut message["body"];
-        if let Some(points) = body.get_mut("breakpoints").and_then(Value::as_array_mut) {
-            for point in points {
-                self.rename(point.get_mut("id"));
-            }
+        if let Some(body) = message.get_mut("body") {
+            self.rename_all(body);
         }
-        self.rename(body.pointer_mut("/breakpoint/id"));
-        let hit = body.get_mut("hitBreakpointIds");
-        for number in hit.and_then(Value::as_array_mut).into_iter().flatten() {
-            self.rename(Some(number));
-        }
-        let thread = body.get("threadId").and_then(Value::as_u64);
-        let is_end = body["reason"] == "exited";
+        let thread = message["body"]["threadId"].as_u64();
+        let is_end = message["body"]["reason"] == "exited";
         match (message["event"].as_str(), thread) {
-            (Some("thread"), Some(thread)) if is_end => drop(self.threads.remove(&thread)),
+            (Some("thread"), Some(thread)) if is_end => {
+                self.threads.remove(&thread);
+                if self.ended.len() < limits::DAP_WAITING {
+                    self.ended.insert(thread);
+                }
+            }
             (Some("thread"), Some(thread)) if self.threads.len() < limits::DAP_WAITING => {
+                self.ended.remove(&thread);
                 self.threads.insert(thread);
             }
             (Some("stopped"), thread) => self.stopped = thread,
@@ -98,6 +98,31 @@ impl Memory {
                 said.numbers = numbers(message);
             }
         }
+    }
+
+    /// Numbers of breakpoints, wherever they stand.
+    fn rename_all(&self, body: &mut Value) {
+        if let Some(points) = body.get_mut("breakpoints").and_then(Value::as_array_mut) {
+            for point in points {
+                self.rename(point.get_mut("id"));
+            }
+        }
+        self.rename(body.pointer_mut("/breakpoint/id"));
+        let hit = body.get_mut("hitBreakpointIds");
+        for number in hit.and_then(Value::as_array_mut).into_iter().flatten() {
+            self.rename(Some(number));
+        }
+    }
+
+    /// Whether a step is that of a thread that has ended, which debugpy takes for one that it can do.
+    pub fn has_ended(&self, request: &Request) -> bool {
+        let thread = request.arguments["threadId"].as_u64();
+        request.command != "continue" && thread.is_some_and(|thread| self.ended.contains(&thread))
+    }
+
+    /// How many programs there were before this one.
+    pub fn runs(&self) -> u64 {
+        self.runs
     }
 
     fn rename(&self, number: Option<&mut Value>) {
@@ -177,6 +202,8 @@ impl Session<'_> {
         self.asked.clear();
         self.errors.clear();
         (self.is_begun, self.is_over, self.is_held) = (false, false, false);
+        (self.goes_alone, self.going) = (false, None);
+        self.memory.ended.clear();
         (self.stops, self.turning, self.lost) = (0, None, None);
         for request in std::mem::take(&mut self.memory.open) {
             self.refuse(&request, OVERTAKEN);

@@ -48,12 +48,14 @@ struct Column {
 /// The recording contradicts itself, or the table cannot be written.
 pub(super) fn write(
     opened: &mut Opened,
-    columns: &Columns,
+    mut columns: Columns,
     last: u64,
     out: File,
     (file, place): (&Path, &Path),
 ) -> Result<(), Error> {
     let failed = |why: ParquetError| Error::file(place, why);
+    free(&mut columns);
+    let columns = &columns;
     let schema = schema(columns).map_err(failed)?;
     let properties = properties(opened, columns);
     let mut out =
@@ -67,7 +69,7 @@ pub(super) fn write(
         }
         progress.at(event.unix_ns - begin, end - begin);
         rows.take(opened, columns, &event, begin);
-        if rows.times.len() >= rows.most {
+        if rows.times.len() >= rows.most || rows.bytes >= limits::TABLE_GROUP_BYTES {
             rows.write(&mut out).map_err(failed)?;
         }
     }
@@ -75,6 +77,20 @@ pub(super) fn write(
         rows.write(&mut out).map_err(failed)?;
     }
     out.close().map(drop).map_err(failed)
+}
+
+/// A node may have the name of one of our columns too: another one is found for it, which no other node has.
+fn free(columns: &mut Columns) {
+    for own in [TIME, SECONDS, FAULT] {
+        let Some(at) = columns.names.iter().position(|name| name == own) else {
+            continue;
+        };
+        let mut name = format!("{own}_");
+        while columns.names.contains(&name) {
+            name.push('_');
+        }
+        columns.names[at] = name;
+    }
 }
 
 /// Names and types.
@@ -93,14 +109,7 @@ fn schema(columns: &Columns) -> Result<Type, ParquetError> {
     ];
     for (name, cell) in columns.names.iter().zip(&columns.cells) {
         let (physical, logical) = types(*cell);
-        // A node may have such a name too.
-        let is_own = [TIME, SECONDS, FAULT].contains(&name.as_str());
-        let name = if is_own {
-            format!("{name}_")
-        } else {
-            name.clone()
-        };
-        fields.push(field(&name, physical, logical, Repetition::OPTIONAL)?);
+        fields.push(field(name, physical, logical, Repetition::OPTIONAL)?);
     }
     let text = Some(LogicalType::String);
     fields.push(field(
@@ -150,6 +159,8 @@ struct Rows {
     times: Vec<i64>,
     seconds: Vec<f64>,
     columns: Vec<Column>,
+    /// Bytes of texts and pictures among them.
+    bytes: usize,
     /// Rows with which they are written.
     most: usize,
 }
@@ -161,6 +172,7 @@ impl Rows {
             times: Vec::new(),
             seconds: Vec::new(),
             columns: own.map(|cell| Column::new(*cell)).collect(),
+            bytes: 0,
             most: (limits::TABLE_CELLS / (columns.names.len() + 1)).clamp(1, limits::TABLE_ROWS),
         }
     }
@@ -178,9 +190,14 @@ impl Rows {
                             self.columns[*place].number(row, number);
                         }
                     }
-                    Layout::Bytes(_) => self.columns[places[0]].bytes(row, tuple.clone()),
+                    Layout::Bytes(_) => {
+                        self.bytes += tuple.len();
+                        self.columns[places[0]].bytes(row, tuple.clone());
+                    }
                     known @ Layout::Text(_) => {
-                        self.columns[places[0]].bytes(row, known.show(tuple).into_bytes());
+                        let text = known.show(tuple).into_bytes();
+                        self.bytes += text.len();
+                        self.columns[places[0]].bytes(row, text);
                     }
                 }
             }
@@ -191,6 +208,7 @@ impl Rows {
             } if columns.nodes[*node] => {
                 let path = &opened.nodes()[*node].path;
                 let fault = format!("{path}: errno {errno}: {reason}");
+                self.bytes += fault.len();
                 if let Some(faults) = self.columns.last_mut() {
                     faults.bytes(row, fault.into_bytes());
                 }
@@ -222,6 +240,7 @@ impl Rows {
         group.close()?;
         self.times.clear();
         self.seconds.clear();
+        self.bytes = 0;
         Ok(())
     }
 }
@@ -333,7 +352,7 @@ mod tests {
         let place = folder.path().join("run.parquet");
         let out = File::create_new(&place).unwrap();
         opened.seek(0);
-        write(&mut opened, &columns, u64::MAX, out, (&path, &place)).unwrap();
+        write(&mut opened, columns, u64::MAX, out, (&path, &place)).unwrap();
         let reader = SerializedFileReader::new(File::open(&place).unwrap()).unwrap();
         let about = reader.metadata().file_metadata();
         let names: Vec<&str> = (about.schema_descr().columns().iter())

@@ -10,8 +10,9 @@ use crate::error::Error;
 use crate::limits;
 use crate::recording::shared::{Opened, seconds};
 use crate::terminal::harmless;
-use journal::layout::Layout;
+use journal::layout::{Layout, Number};
 use journal::read::{Event, EventKind};
+use recorder::errno::LEFT;
 use std::collections::VecDeque;
 use std::fmt::Write;
 
@@ -49,6 +50,8 @@ pub(super) struct Tally {
     waiting: Option<VecDeque<Had>>,
     /// When those were given.
     given: u64,
+    /// The number of the failure that stands in what has come.
+    standing: Option<i32>,
 }
 
 /// Compares them.
@@ -133,6 +136,9 @@ impl Tally {
         let waiting = self.waiting.get_or_insert_default();
         waiting.clear();
         self.anew += u64::from(matches!(had, Some(Ok(_))));
+        if let Some(had) = &had {
+            self.standing = had.as_ref().err().map(|(errno, _)| *errno);
+        }
         waiting.extend(had);
     }
 
@@ -144,6 +150,11 @@ impl Tally {
             return;
         };
         let Some(now) = waiting.pop_front() else {
+            // It goes on to fail, or a reload has taken the node away, of which no device knows.
+            let errno = had.as_ref().err().map(|(errno, _)| *errno);
+            if errno.is_some() && (errno == self.standing || errno == Some(LEFT)) {
+                return;
+            }
             let what = match had {
                 Ok(tuple) => format!("recorded is {}, now it is nothing", shown(layouts.0, tuple)),
                 Err((_, why)) => {
@@ -203,12 +214,15 @@ impl Tally {
                 continue;
             };
             met += 1;
-            let far = (other.to_f64() - number.to_f64()).abs();
-            if far == 0.0 || far.is_nan() {
+            if is_same(number, *other) {
                 continue;
             }
             let what = format!("{} was {number}, is {other}", harmless(name));
-            if at >= from && self.largest.as_ref().is_none_or(|largest| far > largest.0) {
+            let far = (other.to_f64() - number.to_f64()).abs();
+            if at >= from
+                && !far.is_nan()
+                && self.largest.as_ref().is_none_or(|largest| far > largest.0)
+            {
                 self.largest = Some((far, at, what.clone()));
             }
             first.get_or_insert(what);
@@ -217,7 +231,7 @@ impl Tally {
         match first {
             Some(what) => self.differ(at, from, what),
             // Numbers in another form are the same numbers.
-            None if met > 0 && names.len() == met => {}
+            None if met > 0 && names.len() == met && was.names().len() == met => {}
             None => self.differ(at, from, is_other()),
         }
     }
@@ -227,6 +241,25 @@ impl Tally {
             self.others += 1;
             self.first.get_or_insert((at, what));
         }
+    }
+}
+
+/// Whether both are the same number, in whatever type; what is no number is the same as what is none either.
+fn is_same(one: Number, other: Number) -> bool {
+    match (whole(one), whole(other)) {
+        (Some(one), Some(other)) => one == other,
+        (Some(_) | None, Some(_) | None) => {
+            let (one, other) = (one.to_f64(), other.to_f64());
+            one == other || (one.is_nan() && other.is_nan())
+        }
+    }
+}
+
+fn whole(number: Number) -> Option<i128> {
+    match number {
+        Number::Signed(number) => Some(number.into()),
+        Number::Unsigned(number) => Some(number.into()),
+        Number::Single(_) | Number::Double(_) => None,
     }
 }
 
@@ -307,6 +340,48 @@ mod tests {
         assert_eq!((tally.recorded, tally.anew, tally.others), (4, 4, 3));
         assert_eq!(tally.first, Some((2, "y was 5, is 4".to_owned())));
         assert_eq!(tally.largest, Some((9.0, 3, "x was 0, is 9".to_owned())));
+    }
+
+    #[test]
+    fn whole_numbers_are_compared_to_their_last_digit_and_a_number_that_is_gone_is_a_difference() {
+        let (pair, one) = (layout("u64 t, i8 y"), layout("u64 t"));
+        let long = 1_700_000_000_000_000_000_u64;
+        let tuple = |t: u64| [&t.to_le_bytes()[..], &[1]].concat();
+        for (now, form, others) in [
+            (tuple(long), &pair, 0),
+            (tuple(long + 1), &pair, 1),
+            (long.to_le_bytes().to_vec(), &one, 1),
+        ] {
+            let mut tally = Tally::default();
+            meet(&mut tally, 1, &tuple(long), &now, (&pair, form));
+            assert_eq!(tally.others, others, "{now:?}");
+        }
+        let float = layout("f64 x");
+        for (before, now, others) in [
+            (f64::NAN, f64::NAN, 0),
+            (f64::NAN, 1.0, 1),
+            (1.0, f64::NAN, 1),
+        ] {
+            let mut tally = Tally::default();
+            let (before, now) = (before.to_le_bytes(), now.to_le_bytes());
+            meet(&mut tally, 1, &before, &now, (&float, &float));
+            // The same bytes are the same.
+            assert_eq!(tally.others, others);
+        }
+    }
+
+    #[test]
+    fn a_failure_that_stands_and_a_node_that_was_taken_away_are_no_difference() {
+        let form = layout("i8 x");
+        let mut tally = Tally::default();
+        let fail = |errno: i32, why: &str| Err((errno, why.into()));
+        tally.give(1, Some(fail(5, "a")), 0);
+        for (errno, why) in [(5, "a"), (5, "b"), (LEFT, "the node has left the tree")] {
+            tally.meet(2, &fail(errno, why), (&form, &form), 0);
+        }
+        assert_eq!(tally.others, 0);
+        tally.meet(3, &fail(6, "c"), (&form, &form), 0);
+        assert_eq!(tally.others, 1);
     }
 
     #[test]

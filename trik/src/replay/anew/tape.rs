@@ -12,13 +12,12 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes it into a new file.
+/// Writes it into an empty file in this folder.
 ///
 /// # Errors
 /// What the run says, or the file cannot be written.
-pub(crate) fn write(run: &mut Run, into: &Path) -> Result<(), Error> {
-    let failed = |why: journal::error::Error| Error::file(into, why);
-    let file = File::create_new(into).map_err(|why| Error::file(into, why))?;
+pub(crate) fn write(run: &mut Run, file: File, folder: &Path) -> Result<(), Error> {
+    let failed = |why: journal::error::Error| Error::file(folder, why);
     let library = concat!("trik/", env!("CARGO_PKG_VERSION"));
     let mut out = Writer::new(BufWriter::new(file), library).map_err(failed)?;
     let anew = run

@@ -106,6 +106,12 @@ fn a_program_in_python_stops_at_lines_and_its_motors_rest_there() {
     let stopped = editor.event("stopped");
     assert_eq!(top(&mut editor, &stopped).1["line"], 6);
     eventually("a motor at rest", || duty(&robot) == 0);
+    // What debugpy refuses moves neither the program nor a motor.
+    for _ in 0..2 {
+        editor.bad("next", json!({"threadId": 99_999}));
+        editor.bad("goto", json!({"threadId": thread, "targetId": 987_654}));
+        eventually("a motor at rest", || duty(&robot) == 0);
+    }
     editor.good("next", json!({"threadId": thread}));
     editor.wait(|message| message["body"]["output"] == "n is 8\n");
     editor.event("stopped");
