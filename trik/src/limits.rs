@@ -289,6 +289,8 @@ pub(crate) const DIFF_SHOWN_CHARS: usize = 60;
 pub(crate) const DIFF_PANELS_MAX: usize = 8;
 /// Names of files that are told if another one was meant.
 pub(crate) const FILES_TOLD: usize = 20;
+/// Events that another configuration converts between two looks whether somebody wants an end.
+pub(crate) const ANEW_STEPS: usize = 256;
 /// Lines of programs that wait for a bridge.
 pub(crate) const STORIES: usize = 1_024;
 /// When a robot is asked again that did not tell of its programs.

@@ -31,6 +31,7 @@ use anew::{compare, tape};
 use args::ReplayArgs;
 use file::FileRecording;
 use lang_text::problem::Locale;
+use nix::sys::signalfd::SignalFd;
 use order::Order;
 use player::{Begin, CONTROL, Player, SOCKET};
 use recording::Recording;
@@ -95,7 +96,7 @@ fn differ(args: &ReplayArgs, config: &Path) -> Result<bool, Refusal> {
 }
 
 /// What is played: the recording, or what another configuration makes of it, which is in a file without a name.
-fn played(args: &ReplayArgs) -> Result<FileRecording, Error> {
+fn played(args: &ReplayArgs, signals: &SignalFd) -> Result<FileRecording, Error> {
     let Some(config) = &args.config else {
         return FileRecording::open(&args.file);
     };
@@ -109,11 +110,9 @@ fn played(args: &ReplayArgs) -> Result<FileRecording, Error> {
     let file = tempfile::tempfile_in(&folder).map_err(|why| Error::file(&folder, why))?;
     // A file without a name has this one.
     let made = PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()));
-    tape::write(
-        &mut run,
-        file.try_clone().map_err(|why| Error::file(&folder, why))?,
-        &folder,
-    )?;
+    let copy = file.try_clone().map_err(|why| Error::file(&folder, why))?;
+    let wants_end = || matches!(signals.read_signal(), Ok(Some(_)));
+    tape::write(&mut run, (copy, &folder), &wants_end)?;
     FileRecording::open(&made)
 }
 
@@ -131,10 +130,9 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         let why = format!("the recording has {} only", words::time(length));
         return Err(Error::file(&args.file, why));
     }
-    // A long one takes its time, in which Ctrl-C ends all.
-    let recording = played(args)?;
-    // Before the player has a thread, so that these come to the main thread alone.
+    // Before converters and the player have threads, so that these come to the main thread alone.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
+    let recording = played(args, &signals)?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
     let place = Place::claim(&place::base()?, mountpoint.as_deref())?;
     let trikd = match args.serving.no_trikd {

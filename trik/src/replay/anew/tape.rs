@@ -4,6 +4,7 @@
 
 use super::{Anew, Had, Run, Step};
 use crate::error::Error;
+use crate::limits;
 use crate::recording::shared::Opened;
 use journal::node::Node;
 use journal::read::EventKind;
@@ -12,11 +13,15 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes it into an empty file in this folder.
+/// Writes it into an empty file in this folder, until somebody wants an end of that.
 ///
 /// # Errors
-/// What the run says, or the file cannot be written.
-pub(crate) fn write(run: &mut Run, file: File, folder: &Path) -> Result<(), Error> {
+/// What the run says, the file cannot be written, or the end.
+pub(crate) fn write(
+    run: &mut Run,
+    (file, folder): (File, &Path),
+    wants_end: &dyn Fn() -> bool,
+) -> Result<(), Error> {
     let failed = |why: journal::error::Error| Error::file(folder, why);
     let library = concat!("trik/", env!("CARGO_PKG_VERSION"));
     let mut out = Writer::new(BufWriter::new(file), library).map_err(failed)?;
@@ -32,7 +37,12 @@ pub(crate) fn write(run: &mut Run, file: File, folder: &Path) -> Result<(), Erro
         let id = (!is_anew).then(|| out.add(node)).transpose();
         as_they_were.push(id.map_err(failed)?);
     }
+    let mut steps: usize = 0;
     run.walk(|plain, _, step| {
+        steps += 1;
+        if steps.is_multiple_of(limits::ANEW_STEPS) && wants_end() {
+            return Err(Error::Refused("ended before all was converted".to_owned()));
+        }
         let written = match step {
             Step::Given(node, at, Some(had)) => had_at(&mut out, anew[node], at, had),
             Step::Given(_, _, None) => Ok(()),
