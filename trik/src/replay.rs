@@ -106,13 +106,13 @@ fn played(args: &ReplayArgs, signals: &SignalFd) -> Result<FileRecording, Error>
         include: &args.include,
         only: &[],
     })?;
-    let folder = std::env::temp_dir();
-    let file = tempfile::tempfile_in(&folder).map_err(|why| Error::file(&folder, why))?;
+    let failed = |why| Error::system("a file of its own", why);
+    let file = tempfile::tempfile().map_err(failed)?;
     // A file without a name has this one.
     let made = PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()));
-    let copy = file.try_clone().map_err(|why| Error::file(&folder, why))?;
+    let copy = file.try_clone().map_err(failed)?;
     let wants_end = || matches!(signals.read_signal(), Ok(Some(_)));
-    tape::write(&mut run, (copy, &folder), &wants_end)?;
+    tape::write(&mut run, (copy, &made), &wants_end)?;
     FileRecording::open(&made)
 }
 

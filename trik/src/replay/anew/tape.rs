@@ -13,16 +13,16 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes it into an empty file in this folder, until somebody wants an end of that.
+/// Writes it into an empty file, which has this path, until somebody wants an end of that.
 ///
 /// # Errors
 /// What the run says, the file cannot be written, or the end.
 pub(crate) fn write(
     run: &mut Run,
-    (file, folder): (File, &Path),
+    (file, into): (File, &Path),
     wants_end: &dyn Fn() -> bool,
 ) -> Result<(), Error> {
-    let failed = |why: journal::error::Error| Error::file(folder, why);
+    let failed = |why: journal::error::Error| Error::file(into, why);
     let library = concat!("trik/", env!("CARGO_PKG_VERSION"));
     let mut out = Writer::new(BufWriter::new(file), library).map_err(failed)?;
     let anew = run
