@@ -127,7 +127,7 @@ fn what_a_wave_of_clients_and_programs_takes_is_given_back() {
     eventually("nobody", is_quiet);
     let (files, names) = (open_files(daemon), threads(daemon));
     let mut memory = Vec::new();
-    for _ in 0..3 {
+    for _ in 0..4 {
         wave(&robot);
         eventually("nobody", is_quiet);
         eventually("the descriptors of before", || open_files(daemon) == files);
@@ -139,8 +139,10 @@ fn what_a_wave_of_clients_and_programs_takes_is_given_back() {
         files.len(),
         names.len()
     );
-    // The allocator keeps what the first waves took, for the next ones.
-    let grown = memory[2].saturating_sub(memory[1]);
-    assert!(grown < 2 << 20, "{memory:?}");
+    // The allocator keeps what the first waves took, for the next ones, and on a busy computer a later wave is higher than
+    // those before it; what is not given back is there again after each.
+    let growths = memory.windows(2).skip(1);
+    let grown = growths.map(|pair| pair[1].saturating_sub(pair[0])).min();
+    assert!(grown.is_some_and(|grown| grown < 2 << 20), "{memory:?}");
     assert_eq!(robot.daemon(), daemon, "{}", robot.log());
 }
