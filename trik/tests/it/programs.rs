@@ -14,6 +14,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 
 /// Drives until it is stopped.
 const LOOP: &str = "brick.motor(M3).setPower(40); brick.motor(M4).setPower(40);\n\
@@ -116,6 +117,7 @@ impl Reachable {
 pub struct Running {
     child: Child,
     said: Arc<Mutex<String>>,
+    readers: [JoinHandle<()>; 2],
 }
 
 impl Running {
@@ -131,16 +133,20 @@ impl Running {
             Box::new(child.stdout.take().expect("a pipe")),
             Box::new(child.stderr.take().expect("a pipe")),
         ];
-        for pipe in pipes {
+        let readers = pipes.map(|pipe| {
             let said = said.clone();
             std::thread::spawn(move || {
                 for line in BufReader::new(pipe).lines().map_while(Result::ok) {
                     let mut all = said.lock().unwrap_or_else(PoisonError::into_inner);
                     all.push_str(&format!("{line}\n"));
                 }
-            });
+            })
+        });
+        Self {
+            child,
+            said,
+            readers,
         }
-        Self { child, said }
     }
 
     /// Both outputs so far.
@@ -155,11 +161,12 @@ impl Running {
         eventually(text, || self.said().contains(text));
     }
 
+    /// How it ended; [`Running::said`] has all that it said after that.
     pub fn code(&mut self) -> Option<i32> {
         let mut code = None;
         eventually("the end of trik run", || {
             code = self.child.try_wait().expect("a child");
-            code.is_some()
+            code.is_some() && self.readers.iter().all(JoinHandle::is_finished)
         });
         code.and_then(|status| status.code())
     }
