@@ -16,7 +16,7 @@ mod viewer;
 mod word;
 mod words;
 
-use crate::control::Browser;
+use crate::admission::Admission;
 use crate::door::Peer;
 use crate::error::Error;
 use crate::gate::{Gate, enter, text};
@@ -35,7 +35,6 @@ use shared::Class;
 use std::collections::HashMap;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use tokio::sync::Semaphore;
 
 pub use member::{Found, Member, OwnPage, Whereabouts};
@@ -89,10 +88,8 @@ impl ClassPage {
                 name,
                 board,
                 guests,
-                viewers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
-                commanders: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+                admission: Admission::default(),
                 uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
-                number: AtomicUsize::new(0),
             });
             Ok(Router::new()
                 .route("/socket", get(socket))
@@ -137,32 +134,12 @@ async fn socket(
     Query(query): Query<HashMap<String, String>>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    let may_drive = class.guests.may_drive(address.ip());
-    // Those who only look take no place from a person who stops the robots.
-    let seats = match may_drive {
-        true => &class.commanders,
-        false => &class.viewers,
-    };
-    let Ok(seat) = seats.clone().try_acquire_owned() else {
-        let most = limits::BROWSERS_MAX;
-        let why = format!("{most} browsers look already: close some, or wait");
-        return text(StatusCode::SERVICE_UNAVAILABLE, why);
-    };
     let locale = locale(&query);
-    let number = class.number.fetch_add(1, Ordering::Relaxed);
-    let who = Browser { number, address };
-    let most = match may_drive {
-        true => limits::MESSAGE_BYTES_MAX,
-        false => limits::WORDS_BYTES_MAX,
-    };
-    upgrade
-        .max_message_size(most)
-        .max_frame_size(most)
-        .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
-        .read_buffer_size(limits::READ_BYTES)
-        .on_upgrade(move |socket| async move {
-            viewer::serve(class, socket, who, locale).await;
-            drop(seat);
+    let (guests, served) = (class.guests.clone(), class.clone());
+    class
+        .admission
+        .admit(&*guests, address, upgrade, move |socket, who| {
+            viewer::serve(served, socket, who, locale)
         })
 }
 

@@ -135,9 +135,11 @@ async fn watch_one(
         let (kept, tuples) = looked.flatten().unzip();
         let tuples = tuples.unwrap_or_default();
         open = kept;
+        // Between two pieces of a tuple the last one is the newest; of a device that is gone there is none.
+        let is_between = tuples.is_empty() && open.is_some();
         told.send_if_modified(|last| {
             let is_same =
-                |last: &Stages| last.path == path && (last.tuples == tuples || tuples.is_empty());
+                |last: &Stages| last.path == path && (last.tuples == tuples || is_between);
             // A node that says nothing at all says that once.
             let is_news = !last.as_ref().is_some_and(is_same);
             if is_news {

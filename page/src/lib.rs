@@ -6,7 +6,7 @@
 //!
 //! - `server`, `serving`, `door`, `route`: the page, its thread, connections, and which address gives what
 //! - `class`: the page of many robots, which has an own server
-//! - `seats`: who gets a place among all connections, and who loses one
+//! - `seats`, `admission`: which connections have a place and which lose it; the places of browsers
 //! - `guard`, `gate`: Host, Origin and the cookie, and what all requests pass
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
@@ -21,6 +21,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod admission;
 mod browser;
 pub mod class;
 #[cfg(test)]

@@ -3,14 +3,13 @@
 //! Owns the addresses; nothing is given before `gate` has agreed.
 
 use crate::browser;
-use crate::control::Browser;
 use crate::diagrams::{self, Change};
 use crate::door::Peer;
 use crate::error::Error;
 use crate::files::File;
 use crate::gate::{enter, text};
 use crate::shared::Shared;
-use crate::{configuration, files, inside, limits, plain, store};
+use crate::{configuration, files, inside, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, State, WebSocketUpgrade};
 use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE};
@@ -21,7 +20,6 @@ use axum::routing::get;
 use lang_text::problem::Locale;
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use tokio::sync::Semaphore;
 use tokio::task::JoinError;
 
@@ -85,27 +83,12 @@ async fn socket(
     Query(query): Query<HashMap<String, String>>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    let Ok(seat) = shared.browsers.clone().try_acquire_owned() else {
-        let most = limits::BROWSERS_MAX;
-        let why = format!("{most} browsers look already: close some, or wait");
-        return text(StatusCode::SERVICE_UNAVAILABLE, why);
-    };
     let locale = locale(&query);
-    let number = shared.number.fetch_add(1, Ordering::Relaxed);
-    let who = Browser { number, address };
-    // A computer that may only look sends nothing large.
-    let most = match shared.settings.guests.may_drive(address.ip()) {
-        true => limits::MESSAGE_BYTES_MAX,
-        false => limits::WORDS_BYTES_MAX,
-    };
-    upgrade
-        .max_message_size(most)
-        .max_frame_size(most)
-        .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
-        .read_buffer_size(limits::READ_BYTES)
-        .on_upgrade(move |socket| async move {
-            browser::serve(shared, socket, who, locale).await;
-            drop(seat);
+    let (guests, served) = (shared.settings.guests.clone(), shared.clone());
+    shared
+        .admission
+        .admit(&*guests, address, upgrade, move |socket, who| {
+            browser::serve(served, socket, who, locale)
         })
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Owns what all requests to it share; `serving` has the thread.
 
+use crate::admission::Admission;
 use crate::control::Control;
 use crate::error::Error;
 use crate::gate::Gate;
@@ -11,7 +12,6 @@ use crate::serving::Serving;
 use crate::shared::{Settings, Shared};
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 use tokio::sync::{Semaphore, watch};
 
 /// A page that is served. Dropping it ends that.
@@ -37,11 +37,10 @@ impl Page {
                 gate: Arc::new(gate),
                 robot: told,
                 control: Control::default(),
-                browsers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+                admission: Admission::default(),
                 uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
                 large: Arc::new(Semaphore::new(limits::LARGE_MAX)),
                 looks: Arc::new(Semaphore::new(limits::LOOKS_MAX)),
-                number: AtomicUsize::new(0),
             })))
         })?;
         Ok(Self { serving, robot })

@@ -2,6 +2,7 @@
 //!
 //! Owns nothing that happens. The robot is where the server was told last.
 
+use crate::admission::Admission;
 use crate::control::Control;
 use crate::gate::Gate;
 use crate::guests::Guests;
@@ -10,7 +11,6 @@ use crate::world::World;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 use tokio::sync::{Semaphore, watch};
 
 /// What a page is for.
@@ -41,13 +41,11 @@ pub struct Shared {
     /// Where the robot takes programs.
     pub robot: watch::Sender<Option<SocketAddr>>,
     pub control: Control,
-    pub browsers: Arc<Semaphore>,
+    pub admission: Admission,
     /// Bytes of uploads that may wait for the robot.
     pub uploads: Arc<Semaphore>,
     /// Large things that are read or made at once: they leave threads for what moves.
     pub large: Arc<Semaphore>,
     /// Looks into nodes at once: a device may make them wait.
     pub looks: Arc<Semaphore>,
-    /// Of the newest browser.
-    pub number: AtomicUsize,
 }

@@ -174,7 +174,7 @@ impl Board {
         held(&self.cards).get(id).map(|(_, card)| look(card))
     }
 
-    /// Changes a card; who looks is told if that has made a difference.
+    /// Changes a card; viewers are told if that has made a difference.
     pub fn change(&self, id: usize, change: impl FnOnce(&mut Card)) {
         let mut cards = held(&self.cards);
         let Some((at, card)) = cards.get_mut(id) else {

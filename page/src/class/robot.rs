@@ -88,7 +88,7 @@ async fn stopped(board: &Board, id: usize) {
     }
 }
 
-/// Whether a stop is still to be given, which is then said to who has the connection.
+/// Whether a stop is still to be given; if so, the sender of the connection is told.
 fn keep_stop(board: &Board, id: usize) -> bool {
     let told = board
         .commands(id)

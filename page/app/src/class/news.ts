@@ -43,3 +43,15 @@ export type News =
   | ({ is: 'robot'; id: number } & Card)
   | { is: 'refused'; why: string }
   | { is: 'beat' };
+
+/** Nothing is known of a robot. */
+export const BLANK: Card = {
+  reach: 'unknown',
+  why: null,
+  page: null,
+  runs: null,
+  last: null,
+  error: null,
+  stop: null,
+  sending: null,
+};

@@ -5,19 +5,7 @@
 import { Link } from '../link/link';
 import { PROGRAM_BYTES_MAX } from '../limits';
 import { isName } from '../robot/program.svelte';
-import type { Card, News, Order, Title } from './news';
-
-/** Nothing is known of a robot. */
-const BLANK: Card = {
-  reach: 'unknown',
-  why: null,
-  page: null,
-  runs: null,
-  last: null,
-  error: null,
-  stop: null,
-  sending: null,
-};
+import { BLANK, type Card, type News, type Order, type Title } from './news';
 
 export class Room {
   name = $state('');

@@ -1,18 +1,8 @@
 import { expect, it } from 'vitest';
-import type { Card } from './news';
+import { BLANK, type Card } from './news';
 import { markOf, partOf, stopSumOf, sumOf } from './sum';
 
-const card = (change: Partial<Card> = {}): Card => ({
-  reach: 'there',
-  why: null,
-  page: null,
-  runs: null,
-  last: null,
-  error: null,
-  stop: null,
-  sending: null,
-  ...change,
-});
+const card = (change: Partial<Card> = {}): Card => ({ ...BLANK, reach: 'there', ...change });
 
 it('a robot that is gone runs nothing', () => {
   const cards = [card({ runs: 'a.py' }), card(), card({ reach: 'absent', runs: 'b.py' })];
