@@ -45,12 +45,9 @@ pub(crate) fn run(args: &FaultArgs) -> Result<u8, Refusal> {
 
 /// Does it, and gives what is to be printed.
 fn fault(args: &FaultArgs) -> Result<String, Error> {
-    let base = place::base()?;
-    let all = place::running(&base).map_err(|error| Error::file(&base, error));
-    // Looking makes the directory; nobody needs it if no robot does.
-    let _ = fs::remove_dir(&base);
+    let all = place::running()?;
     let named = args.robot.as_deref().map(tree_of).transpose()?;
-    let robot = choose(all?, named.as_deref());
+    let robot = choose(all, named.as_deref());
     let Some(device) = &args.device else {
         // The table is good to know also when nothing runs.
         return Ok(table(robot.ok().as_ref()));

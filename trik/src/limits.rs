@@ -228,10 +228,10 @@ pub const DAP_WAITING: usize = 1000;
 pub const TRANSLATED_BYTES_MAX: usize = 1000;
 /// Files whose breakpoints are kept for a restart of a program in Python.
 pub const DAP_SOURCES_MAX: usize = 1000;
-/// Who is heard in one turn where a program in Python is awaited: as many as the system lets wait.
+/// Connections that are accepted in one turn where a program in Python is awaited: as many as the system lets wait.
 pub const RELAY_COMERS: usize = 128;
-/// Who may connect at once to where a program in Python is awaited, before it is known who they are: more than come in one
-/// turn, so that those do not turn out the program before it has said its secret.
+/// Connections there that have not said yet what they are: more than come in one turn, so that a crowd does not turn out the
+/// program before its secret has arrived.
 pub const RELAY_UNKNOWN_MAX: usize = 2 * RELAY_COMERS;
 /// Events of a robot that wait for the debugger; the oldest are lost.
 pub const DEBUG_EVENTS_MAX: usize = 10_000;

@@ -30,15 +30,19 @@ const WORLD: &str = "lua";
 /// # Errors
 /// It cannot be made, or somebody else could write to it.
 pub fn base() -> Result<PathBuf, Error> {
+    let dir = path();
+    make_private(&dir).map_err(|error| Error::file(&dir, error))?;
+    Ok(dir)
+}
+
+fn path() -> PathBuf {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
-    let dir = match runtime.filter(|dir| dir.is_absolute() && dir.is_dir()) {
+    match runtime.filter(|dir| dir.is_absolute() && dir.is_dir()) {
         Some(runtime) if runtime.as_os_str().len() + 5 <= limits::BASE_BYTES_MAX => {
             runtime.join("trik")
         }
-        _ => PathBuf::from(format!("/tmp/trik-{}", geteuid())),
-    };
-    make_private(&dir).map_err(|error| Error::file(&dir, error))?;
-    Ok(dir)
+        Some(_) | None => PathBuf::from(format!("/tmp/trik-{}", geteuid())),
+    }
 }
 
 /// In /tmp everybody may have been here first.
@@ -47,6 +51,10 @@ fn make_private(dir: &Path) -> io::Result<()> {
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
         _ => {}
     }
+    check_private(dir)
+}
+
+fn check_private(dir: &Path) -> io::Result<()> {
     let found = dir.symlink_metadata()?;
     if !found.is_dir() || found.uid() != geteuid().as_raw() || found.mode() & 0o077 != 0 {
         return Err(io::Error::other(
@@ -212,11 +220,20 @@ pub struct Running {
     pub page: Option<SocketAddr>,
 }
 
-/// All robots of this user that run.
+/// All robots of this user that run. Looking makes nothing, so that many may look while a robot starts or ends.
 ///
 /// # Errors
-/// The directory cannot be read.
-pub fn running(base: &Path) -> io::Result<Vec<Running>> {
+/// The directory cannot be read, or somebody else could write to it.
+pub fn running() -> Result<Vec<Running>, Error> {
+    let base = path();
+    let found = match check_private(&base) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        private => private.and_then(|()| running_in(&base)),
+    };
+    found.map_err(|error| Error::file(&base, error))
+}
+
+fn running_in(base: &Path) -> io::Result<Vec<Running>> {
     let mut found = Vec::new();
     for number in 1..=limits::ROBOTS_MAX {
         let name = name(number);
@@ -410,7 +427,7 @@ mod tests {
         let second = Place::claim(&base.0, None).expect("another place");
         assert_eq!(first.mountpoint, base.0.join("robot"));
         assert_eq!(second.mountpoint, base.0.join("robot-2"));
-        let found = running(&base.0).expect("a list");
+        let found = running_in(&base.0).expect("a list");
         let points: Vec<_> = found.into_iter().map(|found| found.mountpoint).collect();
         assert_eq!(
             points,
@@ -419,7 +436,7 @@ mod tests {
         let at = "127.0.0.1:8888".parse().ok();
         let page = "127.0.0.1:8000".parse().ok();
         let told = || {
-            let first = running(&base.0).expect("a list").swap_remove(0);
+            let first = running_in(&base.0).expect("a list").swap_remove(0);
             (first.trikd, first.page)
         };
         first.announce(at, page).expect("a record");
@@ -447,7 +464,7 @@ mod tests {
         fs::create_dir_all(base.0.join("robot-3.board/dev")).expect("a board");
         fs::create_dir_all(base.0.join("robot-3.trikd/scripts")).expect("folders");
         fs::create_dir(base.0.join("robot-3")).expect("a mount point");
-        assert_eq!(running(&base.0).expect("a list"), []);
+        assert_eq!(running_in(&base.0).expect("a list"), []);
         let place = Place::claim(&base.0, None).expect("a place");
         for name in ["robot-3", "robot-3.board", "robot-3.trikd", "robot-3.lock"] {
             assert!(!base.0.join(name).exists(), "{name}");

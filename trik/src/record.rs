@@ -117,7 +117,7 @@ fn watched(args: &RecordArgs, root: &Path) -> Result<Watch, Error> {
 
 /// Where the world around the virtual robot of this tree is told; None if it is none of this user.
 fn world(root: &Path) -> Option<PathBuf> {
-    let all = place::running(&place::base().ok()?).ok()?;
+    let all = place::running().ok()?;
     let is_it = |robot: &place::Running| robot.mountpoint.canonicalize().is_ok_and(|at| at == root);
     let robot = all.into_iter().find(is_it)?;
     Some(telling::folder(&robot.board))
@@ -260,10 +260,7 @@ pub(crate) fn tree(named: Option<&Path>) -> Result<PathBuf, Error> {
     let root = match named {
         Some(path) => path.to_owned(),
         None => {
-            let base = place::base()?;
-            let all = place::running(&base).map_err(|error| Error::file(&base, error))?;
-            // Looking makes the directory; nobody needs it if no robot does.
-            let _ = std::fs::remove_dir(&base);
+            let all = place::running()?;
             match &all[..] {
                 [one] => one.mountpoint.clone(),
                 [] if Path::new(USUAL).join("config").exists() => PathBuf::from(USUAL),

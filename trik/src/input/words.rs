@@ -13,6 +13,10 @@ pub(crate) fn why(unread: &Unread, most: u64, directory: [&str; 2]) -> Words {
             format!("this is a directory: name {english}"),
             format!("это папка: назовите {russian}"),
         ),
+        Unread::TooLong if most < 1 << 20 => Words::new(
+            format!("longer than {} KiB", most >> 10),
+            format!("длиннее {} КиБ", most >> 10),
+        ),
         Unread::TooLong => Words::new(
             format!("longer than {} MiB", most >> 20),
             format!("длиннее {} МиБ", most >> 20),
@@ -35,6 +39,10 @@ pub(crate) fn why(unread: &Unread, most: u64, directory: [&str; 2]) -> Words {
 pub(crate) const A_FILE: [&str; 2] = ["a file", "файл"];
 /// See [`A_FILE`]; a diagram.
 pub(crate) const A_DIAGRAM: [&str; 2] = ["a diagram, a file NAME.qrs", "диаграмму, файл NAME.qrs"];
+
+/// See [`A_FILE`]; the robots of a class.
+pub(crate) const A_CLASS: [&str; 2] =
+    ["a file that names robots", "файл, который называет роботов"];
 
 /// A text that is none in UTF-8.
 pub(crate) fn no_text() -> Words {

@@ -28,7 +28,7 @@ pub(crate) struct Programs {
 /// What was read of variables.
 #[derive(Debug, Default)]
 struct Seen {
-    /// The robot logs who comes and goes: who looks each second stays.
+    /// The robot logs each client that comes and goes: one that looks each second stays connected.
     link: Option<Link>,
     /// The number of the last question.
     tag: u64,

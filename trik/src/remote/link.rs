@@ -37,6 +37,22 @@ pub(super) enum Message {
     Stream(Vec<u8>),
 }
 
+impl Message {
+    /// The piece of a recording, where nothing else was asked for; what comes to all clients is none.
+    pub fn piece(self) -> Option<Vec<u8>> {
+        match self {
+            Self::Stream(piece) => Some(piece),
+            Self::Print(_)
+            | Self::Error(_)
+            | Self::Info(_)
+            | Self::Version
+            | Self::Status(_)
+            | Self::Debug(_)
+            | Self::Question(_) => None,
+        }
+    }
+}
+
 /// What a frame says; None: nothing that anybody here asked for.
 fn message(frame: &[u8]) -> Option<Message> {
     let colon = frame.iter().position(|&byte| byte == b':')?;

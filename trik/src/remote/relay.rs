@@ -117,14 +117,14 @@ impl Relay {
         Ok(true)
     }
 
-    /// Hears who has come, of many at once: a crowd is not to keep the program out.
+    /// Accepts what has come, many at once: a crowd is not to keep the program out.
     fn greet(&mut self) {
         for _ in 0..limits::RELAY_COMERS {
             let mut there = [PollFd::new(self.listener.as_fd(), PollFlags::POLLIN)];
             if !poll(&mut there, PollTimeout::ZERO).is_ok_and(|count| count > 0) {
                 return;
             }
-            // Who was there may have gone before it was let in, which is no end of the talk.
+            // A connection may be gone before it is accepted, which is no end of the talk.
             let Ok((stream, peer)) = self.listener.accept() else {
                 continue;
             };
@@ -144,7 +144,7 @@ impl Relay {
             Seems::TheProgram if self.come.is_some() => {}
             Seems::TheProgram => self.come = Some(one.stream),
             Seems::Undecided => {
-                // Who says nothing must not keep the program out.
+                // A connection that says nothing must not keep the program out.
                 if self.unknown.len() >= limits::RELAY_UNKNOWN_MAX {
                     self.unknown.pop_front();
                 }

@@ -1,14 +1,15 @@
 //! The robots of a class, as a file names them: a line for each with its name, where it is, and perhaps its group.
 //!
-//! Owns the form of the file. Who is where at the moment is known to `target`, which is asked each time: a virtual robot has
+//! Owns the form of the file. Where a robot is at the moment is known to `target`, which is asked each time: a virtual robot has
 //! another address whenever it starts.
 
 use super::output::harmless;
 use super::target::{Target, is_path, target};
 use crate::error::Error;
+use crate::input;
+use crate::input::words::{A_CLASS, no_text, why};
 use crate::limits;
 use std::collections::BTreeSet;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Before the port of the page of a robot.
@@ -77,18 +78,10 @@ pub(crate) fn class(text: &str) -> Result<Class, Error> {
 }
 
 fn read(path: &Path) -> Result<Class, Error> {
-    let fail = |error: std::io::Error| Error::file(path, error);
-    let file = std::fs::File::open(path).map_err(fail)?;
     let most = limits::CLASS_BYTES_MAX;
-    let mut text = String::new();
-    let size = file
-        .take(most + 1)
-        .read_to_string(&mut text)
-        .map_err(fail)?;
-    if size as u64 > most {
-        let why = format!("longer than {} KiB: it is no list of robots", most >> 10);
-        return Err(Error::file(path, why));
-    }
+    let bytes = input::read(path, most)
+        .map_err(|unread| Error::file(path, why(&unread, most, A_CLASS).english))?;
+    let text = String::from_utf8(bytes).map_err(|_| Error::file(path, no_text().english))?;
     // A path keeps its slash, by which it is known as one.
     let folder = path
         .parent()
@@ -294,6 +287,18 @@ mod tests {
             assert!(why.ends_with("it has blue, red"), "{why}");
         }
         assert!(names("/none/class.txt").is_err());
+        // What gives nothing is not waited for.
+        let pipe = home.path().join("pipe");
+        nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).expect("a FIFO");
+        std::fs::write(&file, [0xff, 0xfe]).expect("a file");
+        for (path, why) in [
+            (pipe.display().to_string(), "nothing comes out of this FIFO"),
+            (path.clone(), "this is no text in UTF-8"),
+            (home.path().display().to_string(), "this is a directory"),
+        ] {
+            let told = names(&path).expect_err(why);
+            assert!(told.contains(why), "{told}");
+        }
         std::fs::write(&file, "anna\n").expect("a file");
         let why = names(&path).expect_err("no address");
         assert!(

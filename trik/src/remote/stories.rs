@@ -3,7 +3,7 @@
 //! Owns the connection and its thread: a robot that is not there, or goes, is asked again later. One who takes the lines too
 //! slowly misses some.
 
-use super::link::{Message, ms};
+use super::link::ms;
 use super::target::Target;
 use crate::error::Error;
 use crate::limits;
@@ -49,27 +49,18 @@ fn follow(target: &Target, give: &SyncSender<Entry>) -> Result<(), Unheard> {
         link.ask(&[b"stream:", NO_NODE]);
         let mut lines = Lines::default();
         loop {
-            match link.next() {
-                Some(Message::Stream(piece)) => {
-                    let Ok(all) = lines.take(&piece) else { break };
-                    for (story, at_ns, line) in all {
-                        pass_on(give, story, Entry::Line(story, at_ns, Arc::new(line)))?;
-                    }
+            let Some(message) = link.next() else {
+                match link.turn(ms(limits::TURN_MS), None, true) {
+                    Ok(_) => continue,
+                    Err(_) => break,
                 }
-                Some(
-                    Message::Print(_)
-                    | Message::Error(_)
-                    | Message::Info(_)
-                    | Message::Version
-                    | Message::Status(_)
-                    | Message::Debug(_)
-                    | Message::Question(_),
-                ) => {}
-                None => {
-                    if link.turn(ms(limits::TURN_MS), None, true).is_err() {
-                        break;
-                    }
-                }
+            };
+            let Some(piece) = message.piece() else {
+                continue;
+            };
+            let Ok(all) = lines.take(&piece) else { break };
+            for (story, at_ns, line) in all {
+                pass_on(give, story, Entry::Line(story, at_ns, Arc::new(line)))?;
             }
         }
     }

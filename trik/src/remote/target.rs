@@ -64,7 +64,7 @@ pub(crate) fn is_path(text: &str) -> bool {
 /// It is none of these, or no virtual robot that takes programs is mounted there.
 pub(crate) fn target(text: &str) -> Result<Target, Error> {
     if is_path(text) {
-        return mounted(&local()?, Path::new(text));
+        return mounted(&place::running()?, Path::new(text));
     }
     if let Some(six) = six(text) {
         return six;
@@ -131,16 +131,7 @@ fn six(text: &str) -> Option<Result<Target, Error>> {
 
 /// The robot if none is named: the virtual one that runs here, or what listens on this machine.
 pub(crate) fn the_one() -> Result<Target, Error> {
-    choose(&local()?)
-}
-
-/// The virtual robots of this user that run.
-fn local() -> Result<Vec<Running>, Error> {
-    let base = place::base()?;
-    let all = place::running(&base).map_err(|error| Error::file(&base, error));
-    // Looking makes the directory; nobody needs it if no robot does.
-    let _ = std::fs::remove_dir(&base);
-    all
+    choose(&place::running()?)
 }
 
 /// What takes programs for the virtual robot that is mounted there. A real robot is never guessed from a path.
@@ -166,7 +157,7 @@ pub(crate) fn tree_of(named: &Path) -> Result<PathBuf, Error> {
         return Ok(named.to_owned());
     }
     match named.to_str().filter(|text| !is_path(text)).map(target) {
-        Some(Ok(address)) => tree_at(&local()?, &address),
+        Some(Ok(address)) => tree_at(&place::running()?, &address),
         Some(Err(_)) | None => Ok(named.to_owned()),
     }
 }
@@ -249,7 +240,7 @@ impl Target {
     /// Where browsers find its page, if it is a virtual robot of this user.
     pub(crate) fn page(&self) -> Option<SocketAddr> {
         let is_meant = |robot: &&Running| robot.trikd.map(Self::from).as_ref() == Some(self);
-        local().ok()?.iter().find(is_meant)?.page
+        place::running().ok()?.iter().find(is_meant)?.page
     }
 
     // Kinds of errors of the system are not ours to list.
