@@ -58,7 +58,7 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
     let _ = writeln!(io::stderr(), "trik dap: waiting on {bound}");
     loop {
         let (stream, peer) = listener.accept().map_err(failed)?;
-        // Anyone who speaks here can run programs as we do. Who has asked for other computers has let everybody in.
+        // A client can run programs as we do. An address for other computers lets everybody in.
         if bound.ip().is_loopback() && !is_own(peer, &stream) {
             let _ = writeln!(
                 io::stderr(),

@@ -19,7 +19,7 @@ use std::time::Instant;
 pub type Service = (&'static str, &'static [&'static str]);
 /// All of them.
 pub const SERVICES: [Service; 2] = [("/stop", &[]), ("/run", &["file"])];
-/// The first ones are for everybody: who sees danger may stop the robot, as by its trikd.
+/// The first ones are for everybody: anyone who sees danger may stop the robot, as by its trikd.
 const FOR_ALL: usize = 1;
 /// Files of a node that are parameters.
 const FILES: [&str; 2] = ["poll_ms", "polarity"];

@@ -1,6 +1,6 @@
 //! Whose process is at the other end of a connection within this computer.
 //!
-//! Owns the table of the kernel: who has made a connection over loopback does not say so by itself, and the kernel knows it.
+//! Owns the reading of the kernel's table: a connection over loopback does not say which user has made it, and the kernel does.
 
 use std::fs;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};

@@ -322,6 +322,8 @@ impl<'a> Session<'a> {
                 self.is_begun = true;
                 match self.again {
                     Some(_) => self.configure_again(),
+                    // It comes too late for an editor that has ended it.
+                    None if self.is_told => {}
                     None => self.client.pass(message),
                 }
             }

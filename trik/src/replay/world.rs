@@ -34,7 +34,8 @@ struct Shared {
 #[derive(Clone, Default)]
 struct Shown {
     version: u64,
-    scene: String,
+    /// Shared by all looks until it changes: it may be long.
+    scene: Arc<str>,
     state: String,
 }
 
@@ -103,7 +104,7 @@ impl Drop for RecordedWorld {
 impl World for RecordedWorld {
     fn scene(&self) -> (u64, String) {
         let shown = self.shared.shown();
-        (shown.version, shown.scene.clone())
+        (shown.version, shown.scene.to_string())
     }
 
     fn version(&self) -> u64 {
@@ -229,7 +230,7 @@ impl Tape {
         let text = String::from_utf8(bytes).ok();
         let text = text.filter(|text| is_json(text.as_bytes()));
         // The page shows a world without anything.
-        shown.scene = text.unwrap_or_else(|| "null".to_owned());
+        shown.scene = text.unwrap_or_else(|| "null".to_owned()).into();
         shown.version += 1;
         Ok(())
     }

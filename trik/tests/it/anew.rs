@@ -125,6 +125,21 @@ sensors/twice: 99 samples, of what sensors/D gave; it was not recorded
 }
 
 #[test]
+fn a_number_that_has_another_name_now_is_drawn_under_both() {
+    let board = recorded();
+    let other = BEFORE.replace("i32 distance", "i32 range");
+    assert_ne!(other, BEFORE);
+    let output = differ(&board, &other, &["-o", "named.svg"]);
+    assert_eq!(output.status.code(), Some(1), "{}", output.stderr);
+    let picture = fs::read_to_string(board.dir().join("named.svg")).expect("a picture");
+    for title in ["sensors/D.range", "sensors/D.distance"] {
+        assert!(picture.contains(title), "{title}: {picture}");
+    }
+    assert_eq!(picture.matches("class=\"b\"").count(), 1);
+    assert_eq!(picture.matches("class=\"l\"").count(), 1);
+}
+
+#[test]
 fn a_filter_that_fails_or_swallows_is_told_where_it_does() {
     let board = recorded();
     let failing = BEFORE.replace(

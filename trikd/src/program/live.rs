@@ -124,7 +124,7 @@ impl Supervisor {
         self.around.clients.debug_begun(asked, &folder);
     }
 
-    /// The log has once, for who looks after the robot, that a program does not reach its debugger.
+    /// Writes once to the log, for the person in charge of the robot, that a program does not reach its debugger.
     pub(super) fn note_debugger(&mut self, said: &str) {
         if let Some(current) = &mut self.current
             && current.is_under_debugpy

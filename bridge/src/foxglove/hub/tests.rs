@@ -108,7 +108,7 @@ fn a_robot_that_is_gone_takes_its_channels_with_it() {
     assert!(!all(&hub, id).concat().contains("connectionGraphUpdate"));
     let (late, _woken) = named(&hub, "d");
     hub.subscribe(late, &[(1, 1)]);
-    // Who asks is told all; who has asked before, what is new.
+    // The first question is answered with all, each later one with what is new.
     hub.watch_graph(late, true);
     let told = all(&hub, late).concat();
     assert!(

@@ -3,7 +3,7 @@
 //! Owns which numbers share a panel, and the colours. Places are those of `trik plot`.
 
 use super::compare::{Wishes, had_of};
-use super::{Had, Run, Step};
+use super::{Anew, Had, Run, Step};
 use crate::chart;
 use crate::error::Error;
 use crate::limits;
@@ -84,16 +84,13 @@ fn pairs(run: &Run, is_wanted: &[bool]) -> (Vec<Pair>, bool) {
         .enumerate()
         .filter(|(node, _)| is_wanted[*node])
     {
-        let names = match &anew.layout {
-            Layout::Fields(_) => anew.layout.names(),
-            Layout::Bytes(_) | Layout::Text(_) => continue,
-        };
+        let names = numbers(run, anew);
         is_all &= names.len() <= limits::DIFF_PANELS_MAX;
-        for name in names.into_iter().take(limits::DIFF_PANELS_MAX) {
+        for (name, unit) in names.into_iter().take(limits::DIFF_PANELS_MAX) {
             if pairs.len() == limits::PLOT_PANELS_MAX {
                 return (pairs, false);
             }
-            let unit = match anew.trial.units.as_str() {
+            let unit = match unit {
                 "" => String::new(),
                 unit => format!(", {}", harmless(unit)),
             };
@@ -108,6 +105,24 @@ fn pairs(run: &Run, is_wanted: &[bool]) -> (Vec<Pair>, bool) {
         }
     }
     (pairs, is_all)
+}
+
+/// The numbers of a node with their units: those that it has now, and then those that it had alone.
+fn numbers<'a>(run: &'a Run, anew: &'a Anew) -> Vec<(String, &'a str)> {
+    let names_of = |layout: &Layout| match layout {
+        Layout::Fields(_) => layout.names(),
+        Layout::Bytes(_) | Layout::Text(_) => Vec::new(),
+    };
+    let now = names_of(&anew.layout);
+    let recorded = anew.recorded.and_then(|node| run.plain.layout(node));
+    let mut before = recorded.map(names_of).unwrap_or_default();
+    before.retain(|name| !now.contains(name));
+    let unit = anew.recorded.map(|node| &*run.plain.nodes()[node].units);
+    let before = before
+        .into_iter()
+        .map(|name| (name, unit.unwrap_or_default()));
+    let now = now.into_iter().map(|name| (name, &*anew.trial.units));
+    now.chain(before).collect()
 }
 
 fn take(line: &mut Line, name: &str, layout: &Layout, had: &Had, (step, at): (usize, f64)) {

@@ -206,6 +206,49 @@ fn all_threads_stop_and_go_on_when_it_is_said() {
     editor.end();
 }
 
+/// A thread that ends at once, and a motor that turns at line 8.
+const SHORT: &str = "\
+import threading
+short = threading.Thread(target=script.wait, args=(300,))
+short.start()
+script.wait(100)
+short.join()
+brick.motor(M3).setPower(40)
+while True:
+    script.wait(5)
+";
+
+#[test]
+fn a_step_of_a_thread_that_has_ended_turns_no_motor() {
+    let Some((python, robot)) = debugged() else {
+        return;
+    };
+    let (mut editor, launch) = launched(&python, &robot, SHORT, json!({}));
+    editor.event("initialized");
+    editor.good("setBreakpoints", points(&robot, &[4, 8]));
+    editor.good("configurationDone", json!({}));
+    editor.answer(launch);
+    let stopped = editor.event("stopped");
+    let main = stopped["threadId"].clone();
+    let threads = editor.good("threads", json!({}));
+    let ids = threads["threads"].as_array().expect("threads").iter();
+    let mut others = ids.map(|one| &one["id"]).filter(|id| **id != main);
+    let other = others.next().expect("the other thread").clone();
+    editor.good("continue", json!({"threadId": main}));
+    editor.event("stopped");
+    eventually("an end of the thread", || {
+        let threads = editor.good("threads", json!({}));
+        threads["threads"].as_array().map(Vec::len) == Some(1)
+    });
+    eventually("motors at rest", || robot.rests());
+    let why = editor.bad("next", json!({"threadId": other}));
+    assert!(why.contains("has ended"), "{why}");
+    assert!(robot.rests());
+    editor.good("continue", json!({"threadId": main}));
+    eventually("a motor that turns", || duty(&robot) != 0);
+    editor.end();
+}
+
 /// Ports of 127.0.0.1 at which processes below this one listen.
 fn doors(parent: u32) -> BTreeSet<u16> {
     let below = |process: u32| {
