@@ -157,8 +157,13 @@ fn svg(wishes: &Wishes<'_>, pairs: &[Pair], is_all: bool, end: f64) -> String {
         panel.top += HEAD;
         let is_last = at + 1 == pairs.len();
         panel.frame(&mut svg, if is_last { "t, s" } else { "" }, &pair.now.title);
-        panel.line_before(&mut svg, before.into_iter());
-        panel.line(&mut svg, now.into_iter(), false);
+        // A number that only one of the two has is a line alone.
+        if !before.is_empty() {
+            panel.line_before(&mut svg, before.into_iter());
+        }
+        if !now.is_empty() {
+            panel.line(&mut svg, now.into_iter(), false);
+        }
         marks(&mut svg, &panel, &pair.now);
     }
     svg.finish()
