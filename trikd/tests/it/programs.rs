@@ -101,6 +101,8 @@ fn two_clients_hear_the_same_and_a_failure_is_a_traceback() {
     let robot = robot(&[]);
     let (mut one, mut other) = (robot.client("control"), robot.client("control"));
     other.sync();
+    // Python may take longer to begin than a client may be silent.
+    other.keep_alive();
     run(&mut one, "b.py", "x = 1\nprint(x)\ny = undefined\n");
     other.expect("info: b.py has started");
     for client in [&mut one, &mut other] {
