@@ -58,3 +58,29 @@ pub const PARAMETERS_MAX: usize = 4096;
 pub const SNAPSHOT_TIME: Duration = Duration::from_millis(200);
 /// Bytes of one parameter.
 pub const PARAMETER_BYTES_MAX: u64 = 4096;
+/// Bytes of one level of an MQTT topic.
+pub const TOPIC_PART_BYTES_MAX: usize = 64;
+/// Bytes of a text that is passed to a broker.
+pub const TEXT_BYTES_MAX: usize = 4096;
+/// Until what has not changed is said once more.
+pub const REPEAT_TIME: Duration = Duration::from_secs(10);
+/// Commands of one kind that wait to be carried out.
+pub const ORDERS_MAX: usize = 64;
+/// Bytes of one command.
+pub const ORDER_BYTES_MAX: usize = 4096;
+/// Actuators that are driven by way of a broker at once.
+pub const LEASES_MAX: usize = 64;
+/// Messages for Home Assistant.
+pub const DISCOVERED_MAX: usize = 4096;
+/// Messages that wait for the connection to a broker; what has no room is said later.
+pub const QUEUE_MAX: usize = 512;
+/// Bytes of a packet of a broker.
+pub const PACKET_BYTES_MAX: u32 = 64 << 10;
+/// Silence after which a broker counts as gone, and we for it.
+pub const KEEP_ALIVE: Duration = Duration::from_secs(5);
+/// For a connection to come about, and for the last word, in seconds.
+pub const WORD_TIME_S: u64 = 5;
+/// Until a broker that is gone is tried again, at first.
+pub const AGAIN_TIME_MIN: Duration = Duration::from_millis(500);
+/// And at last.
+pub const AGAIN_TIME_MAX: Duration = Duration::from_secs(15);

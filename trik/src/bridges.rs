@@ -4,6 +4,7 @@
 
 pub(crate) mod args;
 mod foxglove;
+mod mqtt;
 
 use crate::error::Error;
 use crate::record::tree;
@@ -31,6 +32,7 @@ pub(crate) fn run(which: &Bridge) -> Result<u8, Refusal> {
     match which {
         Bridge::Prometheus(args) => prometheus(args),
         Bridge::Foxglove(args) => foxglove::serve(args),
+        Bridge::Mqtt(args) => mqtt::serve(args),
     }
 }
 

@@ -303,3 +303,5 @@ pub(crate) const TABLE_GROUP_BYTES: usize = 32 << 20;
 pub(crate) const TABLE_CELLS: usize = 4 << 20;
 #[cfg(feature = "parquet")]
 pub(crate) const TABLE_ROWS: usize = 65_536;
+/// Bytes of a file with a password or certificates.
+pub const SECRET_BYTES_MAX: u64 = 256 << 10;

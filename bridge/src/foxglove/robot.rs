@@ -240,17 +240,33 @@ impl Robot {
             .and_then(|index| SERVICES.get(index))
             .ok_or(Refused::Service(service))?;
         if *name == "/stop" {
-            // The motors first: a program may take its time.
-            let rest = std::fs::write(self.root.join("stop"), "1\n");
-            let ended = self
-                .programs
-                .as_ref()
-                .map_or(Ok(()), |programs| programs.stop());
-            rest.map_err(|why| Refused::Tree("stop".to_owned(), why.to_string()))?;
-            return ended;
+            return self.stop();
         }
         let file = arguments.get("file").and_then(Value::as_str);
-        self.programs()?.run(file.ok_or(Refused::Argument("file"))?)
+        self.run(file.ok_or(Refused::Argument("file"))?)
+    }
+
+    /// Brings everything to rest and ends the program.
+    ///
+    /// # Errors
+    /// The tree does not take it, or the program goes on.
+    pub fn stop(&self) -> Result<(), Refused> {
+        // The motors first: a program may take its time.
+        let rest = std::fs::write(self.root.join("stop"), "1\n");
+        let ended = self
+            .programs
+            .as_ref()
+            .map_or(Ok(()), |programs| programs.stop());
+        rest.map_err(|why| Refused::Tree("stop".to_owned(), why.to_string()))?;
+        ended
+    }
+
+    /// Runs a program that the robot has.
+    ///
+    /// # Errors
+    /// It has none of this name, or nobody runs programs.
+    pub fn run(&self, file: &str) -> Result<(), Refused> {
+        self.programs()?.run(file)
     }
 
     fn programs(&self) -> Result<&dyn Programs, Refused> {

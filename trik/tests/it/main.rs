@@ -38,6 +38,8 @@ mod hold;
 mod lsp;
 /// Models in DCML: a body of their own, and nodes that follow it.
 mod models;
+/// Robots by way of an MQTT broker.
+mod mqtt;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.

@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 /// Drives until it is stopped.
-const LOOP: &str = "brick.motor(M3).setPower(40); brick.motor(M4).setPower(40);\n\
+pub const LOOP: &str = "brick.motor(M3).setPower(40); brick.motor(M4).setPower(40);\n\
                     print('drives');\nwhile (true) script.wait(50);\n";
 
 /// A robot that takes programs, and where.
@@ -147,6 +147,10 @@ impl Running {
             said,
             readers,
         }
+    }
+
+    pub fn pid(&self) -> u32 {
+        self.child.id()
     }
 
     /// Both outputs so far.

@@ -1,0 +1,204 @@
+//! `trik bridge mqtt`: the run, from its beginning to Ctrl-C.
+//!
+//! Owns which robot is told of, the files that a person names, and what a person is told. What a broker gets is known to the
+//! crate `bridge`.
+
+use super::args::MqttArgs;
+use super::{PROGRAM, refused, root, say};
+use crate::error::Error;
+use crate::input;
+use crate::input::words::{A_FILE, no_text, why};
+use crate::limits;
+use crate::refusal::Refusal;
+use crate::remote::bridged::Programs;
+use crate::remote::target::target;
+use crate::terminal::harmless;
+use crate::up::session::signals;
+use ::bridge::follow::{Change, Follow};
+use ::bridge::foxglove::robot::{self, Robot};
+use ::bridge::mqtt::Message;
+use ::bridge::mqtt::client::{Client, News, Settings, Tls, Voice};
+use ::bridge::mqtt::discovery;
+use ::bridge::mqtt::hands::Hands;
+use ::bridge::mqtt::inbox::Inbox;
+use ::bridge::mqtt::topics::Topics;
+use ::bridge::mqtt::values::Values;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use std::fs;
+use std::os::fd::AsFd;
+use std::path::Path;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// How often the hands look for leases that nobody uses any more.
+const LOOK_TIME: Duration = Duration::from_millis(50);
+
+/// Serves until somebody stops it.
+///
+/// # Errors
+/// There is no tree, a file cannot be read, the broker does not let us in, or another one has our name.
+pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
+    let root = root(args.robot.as_deref(), args.mountpoint.as_deref())?;
+    let topics = topics(args)?;
+    let settings = settings(args)?;
+    // Threads inherit what is blocked.
+    let signals = signals().map_err(|error| Error::system("signals", error))?;
+    let mut follow = Follow::begin(&root, PROGRAM).map_err(refused)?;
+    let shown = root.display().to_string();
+    let programs = args
+        .programs
+        .clone()
+        .or_else(|| target(&format!("{shown}/")).ok());
+    let programs = programs.map(|at| Box::new(Programs::new(at)) as Box<dyn robot::Programs>);
+    let deadman = Duration::from_millis(args.deadman.into());
+    let inbox = Arc::new(Inbox::new(args.control));
+    let hands = Hands::new(root.clone(), Robot::new(&root, programs), &topics, deadman);
+    let mut values = Values::new(&topics, Duration::from_secs(1) / args.rate);
+    values.take(&follow.beginning());
+    let client = Client::begin(settings, &topics, inbox.clone()).map_err(refused)?;
+    let hands = carry_out(hands, inbox.clone(), client.voice())?;
+    let at = format!("{}:{}", args.broker.host, args.broker.port);
+    say(&format!(
+        "{shown}: {} at {at}; Ctrl-C ends it\n",
+        topics.life().trim_end_matches("/life")
+    ))?;
+    let voice = client.voice();
+    let (mut entries, mut found, mut is_there) = (Vec::new(), Vec::new(), false);
+    let over = loop {
+        entries.clear();
+        match follow.look(&mut entries) {
+            Change::Same => values.take(&entries),
+            Change::Gone => {
+                client.life(false);
+                say("the tree is gone; waiting for it\n")?;
+            }
+            Change::Back => {
+                values.take(&follow.beginning());
+                client.life(true);
+                say("the tree is there again\n")?;
+            }
+        }
+        match client.news() {
+            None => {}
+            Some(News::Connected) => {
+                is_there = true;
+                say(&format!("{at}: connected\n"))?;
+                client.life(follow.is_there());
+                values.begin_anew();
+                found = discovered(args, &topics, &values);
+            }
+            Some(News::Lost(why)) => {
+                is_there = false;
+                let why = harmless(&why);
+                say(&format!("{at}: {why}; it is tried again\n"))?;
+            }
+            Some(News::Forbidden(what)) => {
+                say(&format!(
+                    "{at}: the broker gives no right: {what}; its list of rights decides\n"
+                ))?;
+            }
+            Some(News::Over(gone)) => break Some(gone),
+        }
+        if values.is_other() {
+            found = discovered(args, &topics, &values);
+        }
+        while is_there
+            && found
+                .last()
+                .is_some_and(|message| voice.say(message.clone()))
+        {
+            found.pop();
+        }
+        if is_there && follow.is_there() {
+            values.due(Instant::now(), |message| voice.say(message));
+        }
+        if let Ok(Some(_)) = signals.read_signal() {
+            break None;
+        }
+        let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];
+        let _ = poll(&mut fds, PollTimeout::from(recorder::limits::LOOK_MS));
+    };
+    // Those who drive rest before anybody hears that the robot is gone.
+    inbox.end();
+    let _ = hands.join();
+    match over {
+        Some(gone) => Err(Error::Refused(format!("{at}: {gone}")).into()),
+        None => {
+            client.end();
+            Ok(0)
+        }
+    }
+}
+
+/// The thread that carries commands out; its end gives back what it holds.
+fn carry_out(mut hands: Hands, inbox: Arc<Inbox>, voice: Voice) -> Result<JoinHandle<()>, Error> {
+    let work = move || {
+        while !inbox.is_over() {
+            if let Some(next) = inbox.next(LOOK_TIME) {
+                voice.say(hands.take(next));
+            }
+            hands.let_go(Instant::now());
+        }
+    };
+    let thread = thread::Builder::new().name("hands".to_owned()).spawn(work);
+    thread.map_err(|why| Error::system("a thread", why))
+}
+
+/// What Home Assistant is told, if it is.
+fn discovered(args: &MqttArgs, topics: &Topics, values: &Values) -> Vec<Message> {
+    let prefix = args.home_assistant.as_deref();
+    prefix.map_or_else(Vec::new, |prefix| {
+        discovery::messages(prefix, topics, &args.class, values)
+    })
+}
+
+fn topics(args: &MqttArgs) -> Result<Topics, Error> {
+    let host = || {
+        let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+        name.trim().to_owned()
+    };
+    let name = args.name.clone().unwrap_or_else(host);
+    Topics::new(&args.class, &name).map_err(refused)
+}
+
+fn settings(args: &MqttArgs) -> Result<Settings, Error> {
+    let tls = args.broker.is_secure.then(|| tls(args)).transpose()?;
+    if tls.is_none() && args.ca.is_some() {
+        let host = &args.broker.host;
+        let why = format!("--ca is for a broker behind TLS: --broker mqtts://{host}");
+        return Err(Error::Refused(why));
+    }
+    let login = match (&args.user, &args.password_file) {
+        (Some(user), Some(file)) => Some((user.clone(), password(file)?)),
+        (None, _) | (_, None) => None,
+    };
+    Ok(Settings {
+        host: args.broker.host.clone(),
+        port: args.broker.port,
+        login,
+        tls,
+    })
+}
+
+fn tls(args: &MqttArgs) -> Result<Tls, Error> {
+    let own = match (&args.cert, &args.key) {
+        (Some(cert), Some(key)) => Some((bytes(cert)?, bytes(key)?)),
+        (None, _) | (_, None) => None,
+    };
+    Ok(Tls {
+        authority: args.ca.as_deref().map(bytes).transpose()?,
+        own,
+    })
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    let most = limits::SECRET_BYTES_MAX;
+    input::read(path, most).map_err(|unread| Error::file(path, why(&unread, most, A_FILE).english))
+}
+
+/// The first line of a file.
+fn password(path: &Path) -> Result<String, Error> {
+    let text = String::from_utf8(bytes(path)?).map_err(|_| Error::file(path, no_text().english))?;
+    Ok(text.lines().next().unwrap_or_default().to_owned())
+}
