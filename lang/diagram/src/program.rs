@@ -69,6 +69,8 @@ pub(crate) struct Spot {
     pub diagram: u32,
     /// Nothing for a type that nobody knows.
     pub row: Option<&'static Row>,
+    /// Where it is drawn on the sheet.
+    pub position: (f64, f64),
 }
 
 /// The text of an expression.
@@ -583,5 +585,18 @@ impl Program {
             block: self.row(node).map(|row| row.shown.to_owned()),
             ..Place::default()
         }
+    }
+
+    /// A problem whose block a person finds on the sheet: there may be many of the same type.
+    pub(crate) fn located(&self, mut problem: Problem) -> Problem {
+        let object = problem.place.object.as_deref();
+        let mut spots = self.spots.iter();
+        if let Some(spot) = spots.find(|spot| object == Some(&*spot.id))
+            && let Some(block) = &mut problem.place.block
+        {
+            let (x, y) = spot.position;
+            block.push_str(&format!(" ({x:.0}, {y:.0})"));
+        }
+        problem
     }
 }
