@@ -57,7 +57,11 @@ fn whole(text: &str) -> Option<&'static str> {
 }
 
 /// Sentences with names and numbers, which stand for `{}`, in English and Russian; the first that fits counts.
-const TEMPLATES: [[&str; 2]; 34] = [
+const TEMPLATES: [[&str; 2]; 35] = [
+    [
+        "{}: {} bytes long, and a robot takes at most {} in one message (about {} MiB){}",
+        "{}: длина {} байт, а в одном сообщении роботу можно передать не больше {} (около {} МиБ){}",
+    ],
     ["{} is not changed: {}", "{} не изменена: {}"],
     ["{} is changed: {}", "{} изменена: {}"],
     ["{} has started", "{} запущена"],
