@@ -586,17 +586,4 @@ impl Program {
             ..Place::default()
         }
     }
-
-    /// A problem whose block a person finds on the sheet: there may be many of the same type.
-    pub(crate) fn located(&self, mut problem: Problem) -> Problem {
-        let object = problem.place.object.as_deref();
-        let mut spots = self.spots.iter();
-        if let Some(spot) = spots.find(|spot| object == Some(&*spot.id))
-            && let Some(block) = &mut problem.place.block
-        {
-            let (x, y) = spot.position;
-            block.push_str(&format!(" ({x:.0}, {y:.0})"));
-        }
-        problem
-    }
 }

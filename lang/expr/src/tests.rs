@@ -66,8 +66,8 @@ impl Bench {
         match self.run(text) {
             Ok(value) => value.printed().to_string(),
             Err(problems) => {
-                let bare = problems.into_iter().map(|one| Problem { hint: None, ..one });
-                let lines: Vec<_> = bare.map(|one| one.to_string()).collect();
+                let bare = |one: Problem| Problem { hint: None, ..one }.to_string();
+                let lines: Vec<_> = problems.into_iter().map(bare).collect();
                 lines.join(" | ")
             }
         }

@@ -139,7 +139,7 @@ impl Version {
             .into_iter()
             .filter(|problem| problem.severity == Severity::Error)
             .chain(program.refusal.clone())
-            .map(|problem| program.located(problem))
+            .map(|problem| located(&program, problem))
             .collect();
         match errors.is_empty() {
             true => Ok(()),
@@ -286,7 +286,7 @@ impl Machine {
             let node = moves.missed_by(thread)?;
             let mut problem = Problem::error(words::block_gone(&thread.name));
             problem.place = old.place(node);
-            Some((handle, old.located(problem)))
+            Some((handle, located(old, problem)))
         });
         found.collect()
     }
@@ -412,6 +412,19 @@ fn move_thread(thread: &mut Thread, moves: &Moves) {
     }
 }
 
+/// A problem whose block a person finds on the sheet: there may be many of the same type.
+fn located(program: &Program, mut problem: Problem) -> Problem {
+    let object = problem.place.object.as_deref();
+    let mut spots = program.spots.iter();
+    if let Some(spot) = spots.find(|spot| object == Some(&*spot.id))
+        && let Some(block) = &mut problem.place.block
+    {
+        let (x, y) = spot.position;
+        block.push_str(&format!(" ({x:.0}, {y:.0})"));
+    }
+    problem
+}
+
 /// Expressions that the old version did not have and that fight with the types that variables have by now.
 fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> {
     let known: HashSet<&str> = old.sources.iter().map(|text| &*text.text).collect();
@@ -431,7 +444,7 @@ fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> 
             }
             problem.place.property = Some(text.property.to_owned());
             problem.place.position = position;
-            found.push(new.located(problem));
+            found.push(located(new, problem));
         }
     }
     found.truncate(lang_text::limits::PROBLEMS);

@@ -404,7 +404,10 @@ fn a_wrong_answer_is_asked_for_once_more_before_the_program_fails() {
     assert_eq!((ran.text("y").as_str(), ran.errors().len()), ("42", 0));
     let ran = asked(&["nonsense", "'five'"], 1);
     let errors = ran.errors();
-    assert!(errors[0].contains("main: Function: 'Expression'"), "{errors:?}");
+    assert!(
+        errors[0].contains("main: Function: 'Expression'"),
+        "{errors:?}"
+    );
 }
 
 #[test]
