@@ -137,6 +137,13 @@ impl Clients {
         }
     }
 
+    /// Sends a payload to one client, which may have left.
+    pub fn tell(&self, id: u32, payload: &[u8]) {
+        if let Some(client) = self.living().iter().find(|client| client.id == id) {
+            client.outbox.push(encode(payload).into());
+        }
+    }
+
     /// Passes a question on to those who answer; false: nobody does.
     pub fn ask(&self, json: &str) -> bool {
         let frame: Rc<[u8]> = encode(format!("question: {json}").as_bytes()).into();

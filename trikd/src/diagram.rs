@@ -1,7 +1,8 @@
 //! Diagrams of TRIK Studio: the machine of crate `lang` with the tree as its robot.
 //!
 //! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
-//! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes;
+//! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes, `versions`
+//! those that are prepared;
 //! `flow` runs programs of data flow, which `source` reads.
 //! What blocks mean is known in `lang` alone.
 
@@ -16,6 +17,7 @@ mod motors;
 mod readings;
 mod robot;
 mod source;
+mod versions;
 mod watch;
 
 use crate::brick::Brick;
@@ -34,10 +36,12 @@ use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use robot::Robot;
 use source::Source;
+use std::cell::Cell;
 use std::io::{self, Read};
 use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
+use versions::Versions;
 use watch::Watch;
 
 /// Runs diagrams.
@@ -87,7 +91,7 @@ impl Engine for Diagram {
             Start::Debugged(path) => (path, true),
             Start::Script(_) | Start::Direct => return Err(Failure::NoFile),
         };
-        let mut robot = Robot::new(brick, host, self.patience);
+        let mut robot = Robot::new(brick, host, self.patience, self.locale);
         let mut watch = Watch::new(self.locale);
         let machine = match self.load(&path, host, &mut watch)? {
             Loaded::Diagram(machine) => *machine,
@@ -206,6 +210,7 @@ fn run(
 ) -> io::Result<()> {
     let start = Instant::now();
     let mut due = start;
+    let mut versions = Versions::new(watch.locale());
     loop {
         let now = since(start);
         let goes_on = diagram.step(now, robot, watch);
@@ -217,20 +222,48 @@ fn run(
         robot.go_on();
         // Steps that are missed are not made up: waits look at the time, not at steps.
         due = next_step(due, Instant::now());
-        let hear = |message| hear(message, since(start), (diagram, robot, watch), host);
-        if !hear_until(due, host, hear)? {
+        if !hear_all(start, due, (diagram, robot, watch), &mut versions, host)? {
             return Ok(());
         }
     }
 }
 
-/// Hears the daemon until a step is due; whether the daemon is there. However much it asks for, steps go on.
-fn hear_until(
+/// Hears the daemon until a step is due, and takes each new version as soon as it is ready; whether the daemon is there.
+fn hear_all(
+    start: Instant,
     due: Instant,
+    (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
+    versions: &mut Versions,
+    host: &Host,
+) -> io::Result<bool> {
+    loop {
+        let until = Cell::new(versions.until(due));
+        let hear = |message| {
+            let parts = (&mut *diagram, &mut *robot, &mut *watch);
+            hear(message, since(start), parts, versions, host)?;
+            until.set(versions.until(due));
+            Ok(())
+        };
+        if !hear_until(&until, host, hear)? {
+            return Ok(false);
+        }
+        take_version(versions, since(start), (diagram, robot, watch), host)?;
+        if Instant::now() >= due {
+            return Ok(true);
+        }
+    }
+}
+
+/// Hears the daemon until a moment, which may come nearer while it is heard; whether the daemon is there. However much it asks
+/// for, steps go on.
+fn hear_until(
+    until: &Cell<Instant>,
     host: &Host,
     mut hear: impl FnMut(Incoming) -> io::Result<()>,
 ) -> io::Result<bool> {
-    let end = due.max(Instant::now() + Duration::from_millis(limits::HEARING_MS));
+    let end = until
+        .get()
+        .max(Instant::now() + Duration::from_millis(limits::HEARING_MS));
     loop {
         // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.
         while let Some(message) = host.waiting()? {
@@ -242,7 +275,7 @@ fn hear_until(
                 return Ok(true);
             }
         }
-        if !wait(host, due)? {
+        if !wait(host, until.get())? {
             return Ok(true);
         }
     }
@@ -273,6 +306,7 @@ fn hear(
     message: Incoming,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
+    versions: &mut Versions,
     host: &Host,
 ) -> io::Result<()> {
     match message {
@@ -280,19 +314,10 @@ fn hear(
         Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-        Incoming::Patch(when_gone, path) => {
-            let (session, mut driven) = diagram.parts(robot);
-            let answer = live::patch(session, (when_gone, &path), &mut driven, watch);
-            host.changed(answer.is_changed, &answer.text)?;
-            diagram.changed();
-            diagram.report(now, true, host)?;
-        }
-        Incoming::Set(text) => {
-            let (session, mut driven) = diagram.parts(robot);
-            let answer = live::set(session, &text, &mut driven, watch);
-            host.changed(answer.is_changed, &answer.text)?;
-            diagram.changed();
-            diagram.report(now, true, host)?;
+        change @ (Incoming::Patch(..) | Incoming::Set(_)) => {
+            if let Some(change) = versions.keep(change) {
+                begin_change(change, now, (diagram, robot, watch), versions, host)?;
+            }
         }
         Incoming::Debug { client, tag, order } => {
             let answer = diagram.order((tag, &order), now, robot, watch);
@@ -309,6 +334,71 @@ fn hear(
         Incoming::Gone => {}
     }
     Ok(())
+}
+
+/// Begins to prepare a new version, or does another change at once.
+fn begin_change(
+    change: Incoming,
+    now: u32,
+    (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
+    versions: &mut Versions,
+    host: &Host,
+) -> io::Result<()> {
+    match change {
+        Incoming::Patch(when_gone, path) => {
+            versions.begin(when_gone, path);
+            Ok(())
+        }
+        Incoming::Set(text) => {
+            let (session, mut driven) = diagram.parts(robot);
+            let answer = live::set(session, &text, &mut driven, watch);
+            tell_change(&answer, now, diagram, host)
+        }
+        // Nothing else is a change.
+        Incoming::Direct(_)
+        | Incoming::Mail(..)
+        | Incoming::Web
+        | Incoming::Watch(_)
+        | Incoming::Debug { .. }
+        | Incoming::DebugLeft
+        | Incoming::Reply(..)
+        | Incoming::Gone => Ok(()),
+    }
+}
+
+/// Puts a version into force that is prepared, and begins what was asked for after it.
+fn take_version(
+    versions: &mut Versions,
+    now: u32,
+    (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
+    host: &Host,
+) -> io::Result<()> {
+    if let Some(ready) = versions.ready() {
+        let answer = match ready.project {
+            Ok(project) => {
+                let (session, mut driven) = diagram.parts(robot);
+                let version = (ready.when_gone, &*ready.name, &project);
+                live::patch(session, version, &mut driven, watch)
+            }
+            Err(answer) => answer,
+        };
+        tell_change(&answer, now, diagram, host)?;
+    }
+    while let Some(change) = versions.next() {
+        begin_change(change, now, (diagram, robot, watch), versions, host)?;
+    }
+    Ok(())
+}
+
+fn tell_change(
+    answer: &live::Answer,
+    now: u32,
+    diagram: &mut Debugging,
+    host: &Host,
+) -> io::Result<()> {
+    host.changed(answer.is_changed, &answer.text)?;
+    diagram.changed();
+    diagram.report(now, true, host)
 }
 
 /// Waits until a moment; true if something came from the daemon before.

@@ -253,6 +253,8 @@ pub const SHOWN_NUMBERS: usize = 3 << 20;
 /// How long a diagram whose next step is late hears what is asked for, in milliseconds: a change that takes longer is the
 /// only one before that step.
 pub const HEARING_MS: u64 = 5;
+/// How often it is looked whether a new version of a diagram is ready, in milliseconds.
+pub const VERSION_LOOK_MS: u64 = 1;
 /// How often a diagram tells where it is, in milliseconds.
 pub const WATCH_MS: u32 = 50;
 /// Bytes of the line that tells it to people.

@@ -71,6 +71,8 @@ struct Current {
     web: Vec<oneshot::Sender<String>>,
     /// Orders to its debugger that it has not answered yet.
     orders: VecDeque<OrderId>,
+    /// Who has asked for changes that it has not answered yet, and of what.
+    changes: VecDeque<(u32, String)>,
     ended: Option<(Ended, Instant)>,
 }
 
@@ -175,8 +177,8 @@ impl Supervisor {
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
-            Command::Patch(when_gone, path) => self.patch(when_gone, &path),
-            Command::Set(text) => self.set(&text),
+            Command::Patch(client, when_gone, path) => self.patch(client, when_gone, &path),
+            Command::Set(client, text) => self.set(client, &text),
             Command::Reply(number, text) => self.reply(number, text.as_deref()),
             Command::Debug(asked, wish) => self.debug(asked, wish).await,
             Command::DebugLeft => self.debugger_left().await,
@@ -326,6 +328,7 @@ impl Supervisor {
             meter: Meter::default(),
             web: Vec::new(),
             orders: VecDeque::new(),
+            changes: VecDeque::new(),
             ended: None,
         });
         // Together with its beginning, so that a recording has that.
@@ -396,14 +399,7 @@ impl Supervisor {
                 self.around.clients.send_to_watchers(line, json);
                 self.around.record.line(Story::Diagram, "diagram", json);
             }
-            FromProgram::Changed { is_changed, text } => {
-                let manner = if is_changed {
-                    Manner::Info
-                } else {
-                    Manner::Error
-                };
-                self.show(manner, text);
-            }
+            FromProgram::Changed { is_changed, text } => self.hear_change(is_changed, text),
             FromProgram::Debug { client, json } => self.hear_debugger(client, json),
             FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
             FromProgram::Question { number, json } => self.question(number, json),

@@ -288,8 +288,11 @@ impl Desk {
     /// Gives a variable the value of an expression.
     ///
     /// # Errors
-    /// What is wrong with either, or the program has ended.
+    /// What is wrong with either, or somebody looks at the past, or the program has ended.
     pub fn assign(&mut self, name: &str, text: &str) -> Result<(), NotNow> {
+        if self.hindsight.is_past() {
+            return Err(NotNow::Past);
+        }
         if let Status::Ended { .. } = self.machine.status() {
             return Err(NotNow::Ended);
         }
@@ -427,9 +430,6 @@ impl Desk {
             Order::Motors(rest) => {
                 self.motors_rest = *rest;
                 return Ok(report::object());
-            }
-            Order::Set(..) if self.hindsight.is_past() => {
-                return Err(Common::NotNow(NotNow::Past).into());
             }
             Order::Set(name, text) => {
                 self.assign(name, text).map_err(Common::NotNow)?;

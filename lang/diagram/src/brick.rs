@@ -6,6 +6,7 @@
 use std::fmt;
 
 use super::ports::Port;
+use lang_text::problem::Problem;
 
 /// Something that a device is told. Texts belong to the program; a command is gone when the call returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -261,6 +262,12 @@ pub trait Brick {
     /// Asks a person, again and again until there is an answer.
     fn ask(&mut self, _question: Question<'_>) -> Answer {
         Answer::Cancelled
+    }
+
+    /// The answer that this question got is no good, for these reasons. Whether the person is asked once more; if not, the
+    /// program makes of the answer what it can.
+    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
+        false
     }
 }
 

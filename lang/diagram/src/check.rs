@@ -229,8 +229,8 @@ fn without_value(tree: &Tree, names: &Names, given: &HashSet<Rc<str>>) -> Vec<Pr
             && !given.contains(name)
             && let Some(Kind::Variable) = names.find(name).and_then(|slot| names.kind(slot))
         {
-            let reason = Reason::Undeclared(name.to_string());
-            found.push(Fault::new(reason, tree.place(id)).problem());
+            let fault = Fault::new(Reason::Undeclared(name.to_string()), tree.place(id));
+            found.push(lang_expr::explained(&fault, tree, names));
         }
     });
     found.sort_by_key(|problem| problem.place.position);

@@ -167,7 +167,7 @@ pub fn generate(
 ) -> Result<Generated, Vec<Problem>> {
     let lowered = lower(project, options.world).map_err(|problem| vec![problem])?;
     let program = &lowered.program;
-    let plan = plan::plan(program)?;
+    let plan = plan::plan(program, plan::For::Generator(language.name()))?;
     let texts = Texts::new(program, &plan, options.compat)?;
     let dialect = language.dialect();
     let jumps = match (dialect.abilities.jumps, options.goto) {

@@ -219,6 +219,7 @@ impl<'a> Lowering<'a> {
             id: block.id.as_str().into(),
             diagram: index,
             row,
+            position: block.position,
         });
         let before = self.problems.len();
         let base = self.base;

@@ -69,6 +69,8 @@ pub(crate) struct Spot {
     pub diagram: u32,
     /// Nothing for a type that nobody knows.
     pub row: Option<&'static Row>,
+    /// Where it is drawn on the sheet.
+    pub position: (f64, f64),
 }
 
 /// The text of an expression.

@@ -14,6 +14,7 @@ use super::brick::{Answer, Brick, Command, Question};
 use super::machine::STEP_MS;
 use super::ports::{Device, Direction, Port, Sort};
 use lang_expr::Kit;
+use lang_text::problem::Problem;
 use lang_text::xml::{self, Element};
 
 /// Pixels in a centimetre.
@@ -149,6 +150,8 @@ pub struct StandIn {
     pub mail: std::collections::VecDeque<String>,
     /// Answers of a person; after them there is none.
     pub answers: std::collections::VecDeque<String>,
+    /// How often a person is asked once more after an answer that is no good.
+    pub second_chances: u32,
     /// Random numbers that come first, if they are within the bounds; later ones come by rule.
     pub randoms: std::collections::VecDeque<i32>,
     /// When something was told, and what.
@@ -407,5 +410,11 @@ impl Brick for StandIn {
         self.answers
             .pop_front()
             .map_or(Answer::Waiting, Answer::Text)
+    }
+
+    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
+        let asks = self.second_chances > 0;
+        self.second_chances = self.second_chances.saturating_sub(1);
+        asks
     }
 }

@@ -3,6 +3,8 @@
 //! Owns the words. Where the original program has a text, the English one is that text, and the Russian one too where it
 //! is known from recorded runs.
 
+use super::debug::order::shortened;
+use lang_text::near::did_you_mean;
 use lang_text::problem::Words;
 
 pub(super) fn too_many_links() -> Words {
@@ -260,6 +262,18 @@ pub(super) fn must_answer() -> Words {
     Words::new("You must input some value!", "Нужно ввести значение!")
 }
 
+pub(super) fn answer_does_not_fit(variable: &str) -> Words {
+    Words::new(
+        format!(
+            "The program cannot do with this what it does with '{variable}': a number is written as 5, a text as 'five'."
+        ),
+        format!(
+            "С таким ответом программа не сможет сделать того, что делает с '{variable}': число пишут как 5, текст как \
+             'пять'."
+        ),
+    )
+}
+
 pub(super) fn not_configured(device: &str, port: &str) -> Words {
     Words::new(
         format!("{device} is not configured on port {port}"),
@@ -398,6 +412,31 @@ pub(super) fn never_changes(name: &str) -> Words {
     Words::new(
         format!("{name} is no variable and never changes"),
         format!("{name} - не переменная и никогда не меняется"),
+    )
+}
+
+/// How many names a sentence lists.
+const LISTED: usize = 20;
+
+pub(super) fn no_variable(name: &str, known: &[&str]) -> Words {
+    let (name, near) = (shortened(name), did_you_mean(name, known.iter().copied()));
+    let mut list = known[..known.len().min(LISTED)].join(", ");
+    if known.len() > LISTED {
+        list.push_str(", ...");
+    }
+    let (english, russian) = match known {
+        [] => (String::new(), String::new()),
+        [..] => (format!("; it has: {list}"), format!("; есть: {list}")),
+    };
+    Words::new(
+        format!(
+            "the program has no variable '{name}'{english}{}",
+            near.english
+        ),
+        format!(
+            "в программе нет переменной '{name}'{russian}{}",
+            near.russian
+        ),
     )
 }
 

@@ -8,6 +8,7 @@
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 
+mod advice;
 mod analyse;
 mod call;
 mod code;
@@ -28,6 +29,7 @@ pub mod types;
 pub mod value;
 pub mod words;
 
+pub use advice::explained;
 pub use escape::{escape, unescape};
 pub use names::{Kind, Names, Slot};
 pub use reserved::Kit;
@@ -171,6 +173,18 @@ impl Source {
             .collect()
     }
 
+    /// Numbers of the last analysis that count as something else than they say, as errors: of a text that somebody has just
+    /// typed, which no program of long ago relies on.
+    pub fn odd_numbers(&self) -> Vec<Problem> {
+        let is_odd = |fault: &&Fault| matches!(fault.reason, Reason::OddNumber(..));
+        let odd = self.faults.iter().filter(is_odd);
+        odd.map(|fault| Problem {
+            severity: Severity::Error,
+            ..fault.problem()
+        })
+        .collect()
+    }
+
     /// The settled type of a part after a good analysis, or [`Type::Any`].
     pub fn type_of(&self, part: Id, names: &Names) -> Type {
         let possible = match self.parts.get(part as usize) {
@@ -195,6 +209,14 @@ mod tests;
 
 fn problems(faults: &[Fault]) -> Vec<Problem> {
     faults.iter().map(Fault::problem).collect()
+}
+
+/// What an analysis found, with advice.
+fn advised(source: &Source, names: &Names) -> Vec<Problem> {
+    let faults = source.faults.iter();
+    faults
+        .map(|fault| explained(fault, &source.tree, names))
+        .collect()
 }
 
 /// Infers the types of a text and prepares it for [`evaluate`]; cheap when no type has changed since the last time.
@@ -237,7 +259,7 @@ fn analyse_anew(source: &mut Source, names: &mut Names) -> Result<(), Vec<Proble
     if is_good {
         Ok(())
     } else {
-        Err(problems(&source.faults))
+        Err(advised(source, names))
     }
 }
 

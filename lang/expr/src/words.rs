@@ -455,6 +455,32 @@ impl Reason {
     }
 }
 
+/// The name that was meant.
+pub(super) fn did_you_mean(known: &str) -> Words {
+    let known = short(written(known));
+    Words::new(
+        format!("Did you mean '{known}'?"),
+        format!("Может быть, '{known}'?"),
+    )
+}
+
+/// A name that no text has taught a type, and the one that was meant.
+pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
+    let name = short(written(name));
+    let meant = meant.map_or_else(|| Words::new("", ""), did_you_mean);
+    let space = if meant.english.is_empty() { "" } else { " " };
+    Words::new(
+        format!(
+            "Nothing has given '{name}' a value.{space}{}",
+            meant.english
+        ),
+        format!(
+            "Переменной '{name}' ничто не дало значения.{space}{}",
+            meant.russian
+        ),
+    )
+}
+
 /// The beginning of a text that may be very long.
 fn short(text: &str) -> String {
     const SHOWN: usize = 80;

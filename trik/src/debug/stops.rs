@@ -39,6 +39,24 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
     lines
 }
 
+/// That it stands still or is looked at in its past, for who only watches, and why; nothing if it runs.
+pub(crate) fn standing(told: &Report, listing: Option<&Listing>, locale: Locale) -> Option<String> {
+    let why = |told: &Report| {
+        let why = told
+            .stop
+            .as_ref()
+            .map(|stop| why((told, stop), listing, locale));
+        why.unwrap_or_default()
+    };
+    let words = match told.state {
+        State::Running | State::Ended => return None,
+        State::Searching => words::is_searched(),
+        State::Stopped => words::is_stopped(&why(told)),
+        State::Past => words::is_past(&time(told), &why(told)),
+    };
+    Some(in_locale(locale, words))
+}
+
 /// The same for a line among others; nothing if it is not stopped.
 pub(crate) fn in_one_line(told: &Report) -> Option<String> {
     let lines = lines(told, None, Locale::English);
@@ -88,5 +106,44 @@ fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
             format!(">     {diagram}, {}", harmless(&token.block))
         }
         None => format!(">     {diagram}, {block} {}", harmless(&at.id)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_only_watches_sees_that_it_stands_still_and_why() {
+        let stop = Stop {
+            reason: "breakpoint".to_owned(),
+            number: Some(2),
+            ..Stop::default()
+        };
+        let told = |state| Report {
+            state,
+            ms: 1500,
+            stop: Some(stop.clone()),
+            ..Report::default()
+        };
+        for (state, expected) in [
+            (State::Running, None),
+            (State::Ended, None),
+            (State::Stopped, Some("stopped by a debugger: breakpoint 2")),
+            (
+                State::Past,
+                Some("stopped, and this is its past as it was at 1.50 s: breakpoint 2"),
+            ),
+            (
+                State::Searching,
+                Some("stopped, and a debugger searches its past"),
+            ),
+        ] {
+            let said = standing(&told(state), None, Locale::English);
+            assert_eq!(said.as_deref(), expected);
+            let russian = standing(&told(state), None, Locale::Russian);
+            assert_eq!(russian.is_some(), expected.is_some());
+            assert!(russian.is_none_or(|said| !said.is_ascii()), "{state:?}");
+        }
     }
 }

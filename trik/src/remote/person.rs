@@ -47,6 +47,11 @@ impl Person {
                 harmless(default).trim_end()
             ),
         };
+        // What was wrong with the last answer to the same question.
+        let shown = match text("wrong").as_str() {
+            "" => shown,
+            wrong => format!("{}\n{shown}", harmless(wrong).trim_end()),
+        };
         let mut err = io::stderr().lock();
         let _ = err.write_all(shown.as_bytes()).and_then(|()| err.flush());
         self.open = Some(Open { number, default });

@@ -50,10 +50,7 @@ impl Upload {
             false => limits::UPLOAD_BYTES_MAX,
         };
         if data.len() > most {
-            return Err(bad(format!(
-                "longer than {} MiB, and a robot takes no longer one",
-                most.div_ceil(1 << 20)
-            )));
+            return Err(bad(too_long(data.len(), most)));
         }
         let mut content = Vec::new();
         let file = std::fs::File::open(path).map_err(|error| bad(error.to_string()))?;
@@ -67,6 +64,11 @@ impl Upload {
                 return Err(bad(why.to_owned()));
             }
             content = with_main(path, content, diagram).map_err(|why| unreadable(path, why))?;
+            // Written anew, it may be longer than it was.
+            let length = content.len() as u64;
+            if length > most {
+                return Err(bad(too_long(length, most)));
+            }
         }
         let name = name.to_owned();
         Ok(Self { name, content })
@@ -131,6 +133,14 @@ impl Upload {
             || text.starts_with(news::UPLOAD_FAILED)
             || text.starts_with(&format!("'{}'", self.name))
     }
+}
+
+/// Why a program of so many bytes is not sent, where so many can be.
+fn too_long(length: u64, most: u64) -> String {
+    format!(
+        "{length} bytes long, and a robot takes at most {most} in one message (about {} MiB)",
+        most.div_ceil(1 << 20)
+    )
 }
 
 /// Why a file cannot be read, without the system's number for it.
@@ -239,7 +249,15 @@ mod tests {
             Upload::read(&dir.join("large"), None)
                 .unwrap_err()
                 .to_string()
-                .contains("longer than 256 MiB")
+                .contains(
+                    "268435457 bytes long, and a robot takes at most 268435456 in one message"
+                )
         );
+        let blocks = std::fs::File::create(dir.join("large.qrs")).expect("a file");
+        blocks.set_len(17 << 20).expect("a hole");
+        let refusal = Upload::read(&dir.join("large.qrs"), None).unwrap_err();
+        let why =
+            "17825792 bytes long, and a robot takes at most 16776192 in one message (about 16 MiB)";
+        assert!(refusal.to_string().contains(why), "{refusal}");
     }
 }

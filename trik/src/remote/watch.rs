@@ -8,7 +8,7 @@ use super::output::{harmless, say};
 use super::target::{Target, target, the_one};
 use crate::debug::listing::{Listing, listing_of};
 use crate::debug::report::Report;
-use crate::debug::stops::words;
+use crate::debug::stops::{standing, words};
 use crate::debug::target::why_not;
 use crate::debug::target::words::{ctrl_c_ends, seconds as unit, told as words_of_robot};
 use crate::error::Error;
@@ -204,9 +204,14 @@ impl<'a> Picture<'a> {
         Ok(())
     }
 
-    /// Threads, then variables, then ports of a data-flow program.
+    /// Whether it stands still, threads, then variables, then ports of a data-flow program.
     fn lines(&mut self, told: &Report) -> Vec<String> {
-        let mut lines = Vec::new();
+        let mut lines: Vec<String> = standing(told, self.listing, self.locale)
+            .into_iter()
+            .collect();
+        if self.is_drawn && !lines.is_empty() {
+            lines.push(String::new());
+        }
         for thread in told.threads.iter().take(limits::WATCH_LINES_MAX) {
             let place = match self.listing {
                 Some(listing) if listing.has(&thread.at.id) => {

@@ -29,6 +29,8 @@ pub(super) struct Asking {
     count: u32,
     /// A block that got no answer may ask at once again, and has to wait until then.
     rests: Option<Instant>,
+    /// The question that a person has answered last, and until when it could be: the answer may be no good.
+    answered: Option<((String, String), Instant)>,
 }
 
 impl Asking {
@@ -39,6 +41,7 @@ impl Asking {
             open: None,
             count: 0,
             rests: None,
+            answered: None,
         }
     }
 
@@ -54,25 +57,7 @@ impl Asking {
             if self.rests.is_some_and(|until| now < until) {
                 return Answer::Waiting;
             }
-            self.count = self.count.wrapping_add(1);
-            let told = Object::new(limits::QUESTION_CHARACTERS)
-                .plain("number", self.count)
-                .text("variable", question.variable)
-                .text("question", question.prompt)
-                .text("default", question.default)
-                .plain("seconds", self.patience.as_secs())
-                .done();
-            tell(self.count, &told);
-            self.open = Some(Open {
-                key,
-                number: self.count,
-                until: now + self.patience,
-                answer: None,
-                default: match question.default {
-                    "" => Answer::Cancelled,
-                    text => Answer::Text(text.to_owned()),
-                },
-            });
+            self.open(question, None, (now, now + self.patience), tell);
             return Answer::Waiting;
         };
         if open.key != key {
@@ -81,7 +66,10 @@ impl Asking {
         let answer = match open.answer.take() {
             None if now < open.until => return Answer::Waiting,
             None | Some(Answer::Cancelled) => open.default.clone(),
-            Some(answer) => answer,
+            Some(answer) => {
+                self.answered = Some((key, open.until));
+                answer
+            }
         };
         self.open = None;
         self.rests = None;
@@ -89,6 +77,57 @@ impl Asking {
             self.rests = Some(now + Duration::from_millis(limits::QUESTION_REST_MS));
         }
         answer
+    }
+
+    /// Asks once more what a person has just answered, with what was wrong; false: the time for it is over, or no person has
+    /// answered.
+    pub(super) fn again(
+        &mut self,
+        question: Question<'_>,
+        wrong: &str,
+        now: Instant,
+        tell: &mut dyn FnMut(u32, &str),
+    ) -> bool {
+        let asked = (question.variable, question.prompt);
+        let is_it = |((variable, prompt), until): &((String, String), Instant)| {
+            (variable.as_str(), prompt.as_str()) == asked && now < *until
+        };
+        let Some((_, until)) = self.answered.take().filter(is_it) else {
+            return false;
+        };
+        self.open(question, Some(wrong), (now, until), tell);
+        true
+    }
+
+    fn open(
+        &mut self,
+        question: Question<'_>,
+        wrong: Option<&str>,
+        (now, until): (Instant, Instant),
+        tell: &mut dyn FnMut(u32, &str),
+    ) {
+        self.count = self.count.wrapping_add(1);
+        let told = Object::new(limits::QUESTION_CHARACTERS)
+            .plain("number", self.count)
+            .text("variable", question.variable)
+            .text("question", question.prompt)
+            .text("default", question.default)
+            .plain("seconds", (until - now).as_secs());
+        let told = match wrong {
+            Some(why) => told.text("wrong", why),
+            None => told,
+        };
+        tell(self.count, &told.done());
+        self.open = Some(Open {
+            key: (question.variable.to_owned(), question.prompt.to_owned()),
+            number: self.count,
+            until,
+            answer: None,
+            default: match question.default {
+                "" => Answer::Cancelled,
+                text => Answer::Text(text.to_owned()),
+            },
+        });
     }
 
     /// What a person says to the question with this number; nothing: no answer will come.
@@ -141,5 +180,32 @@ mod tests {
         assert_eq!(told.len(), 3);
         let first = "{\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"1\",\"seconds\":120}";
         assert_eq!(told[0], (1, first.to_owned()));
+    }
+
+    #[test]
+    fn a_wrong_answer_has_another_chance_within_the_same_time() {
+        let patience = Duration::from_secs(120);
+        let mut asking = Asking::new(patience);
+        let now = Instant::now();
+        let mut told = Vec::new();
+        let mut tell = |_: u32, json: &str| told.push(json.to_owned());
+        let asked = |asking: &mut Asking, now, tell: &mut dyn FnMut(u32, &str)| {
+            asking.ask(question("m"), now, tell)
+        };
+        assert_eq!(asked(&mut asking, now, &mut tell), Answer::Waiting);
+        assert!(!asking.again(question("m"), "too early", now, &mut tell));
+        asking.hear(1, Some("x".into()));
+        assert_eq!(asked(&mut asking, now, &mut tell), Answer::Text("x".into()));
+        let later = now + Duration::from_secs(100);
+        assert!(!asking.again(question("n"), "another one", later, &mut tell));
+        asking.answered = Some((("m".into(), "How many?".into()), now + patience));
+        assert!(asking.again(question("m"), "no 'x'", later, &mut tell));
+        assert_eq!(asked(&mut asking, later, &mut tell), Answer::Waiting);
+        // Nobody answers any more, and so nobody is asked once more.
+        let late = now + patience;
+        assert_eq!(asked(&mut asking, late, &mut tell), Answer::Cancelled);
+        assert!(!asking.again(question("m"), "no 'x'", late, &mut tell));
+        let second = "{\"number\":2,\"variable\":\"m\",\"question\":\"How many?\",\"default\":\"\",\"seconds\":20,\"wrong\":\"no 'x'\"}";
+        assert_eq!(told.get(1).map(String::as_str), Some(second));
     }
 }

@@ -23,6 +23,7 @@ use lang_dataflow::program::{NodeId, Program};
 use lang_diagram::machine::Status;
 use lang_expr::Value;
 use lang_text::problem::{Locale, Problem};
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
@@ -140,7 +141,7 @@ impl Flow {
                 self.hear(message, since(start), (robot, watch), host)?;
             }
             let hear = |message| self.hear(message, since(start), (robot, watch), host);
-            if !hear_until(due, host, hear)? {
+            if !hear_until(&Cell::new(due), host, hear)? {
                 return Ok(());
             }
         }

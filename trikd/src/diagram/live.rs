@@ -5,12 +5,12 @@
 
 use super::watch::Watch;
 use super::{opened, read_save};
-use crate::engine::NoDiagram;
 use crate::protocol::news;
 use lang_diagram::brick::Brick;
 use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::{Refused, Version, WhenGone};
+use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use std::path::Path;
 
@@ -39,29 +39,35 @@ impl Answer {
     }
 }
 
-/// Replaces the program that runs by the save in a file, whole or not at all.
+/// The name of a program in messages.
+pub(super) fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+/// The project in a file, if nothing is wrong with it whatever runs. Knows no program that runs, so that another thread may
+/// do it.
+pub(super) fn prepared(path: &Path, locale: Locale) -> Result<Project, Answer> {
+    let name = name(path);
+    let save = read_save(path).and_then(|bytes| opened(&bytes, locale));
+    let save = save.map_err(|why| Answer::unchanged(&name, &why.to_string()))?;
+    let checked = Version::mistakes(&save.project, World::Robot);
+    checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
+    Ok(save.project)
+}
+
+/// Replaces the program that runs by a project that is prepared, whole or not at all.
 pub(super) fn patch(
     session: &mut Session,
-    (when_gone, path): (WhenGone, &Path),
+    (when_gone, name, project): (WhenGone, &str, &Project),
     robot: &mut dyn Brick,
     watch: &mut Watch,
 ) -> Answer {
-    let locale = watch.locale();
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let refused = |why: &Refused| Answer::unchanged(&name, &explained(why, locale));
-    let save = match read_save(path).and_then(|bytes| opened(&bytes, locale)) {
-        Ok(save) => save,
-        Err(why @ (NoDiagram::Unread(_) | NoDiagram::TooLong(_) | NoDiagram::Problems(_))) => {
-            return Answer::unchanged(&name, &why.to_string());
-        }
-    };
-    let version = match Version::of(&save.project, World::Robot) {
-        Ok(version) => version,
-        Err(why) => return refused(&why),
-    };
-    match session.patch(&version, when_gone, robot, watch) {
-        Ok(patched) => Answer::changed(&name, &patched.to_string()),
-        Err(why) => refused(&why),
+    let version = Version::of_checked(project, World::Robot);
+    let patched = version.and_then(|version| session.patch(&version, when_gone, robot, watch));
+    match patched {
+        Ok(patched) => Answer::changed(name, &patched.to_string()),
+        Err(why) => Answer::unchanged(name, &explained(&why, watch.locale())),
     }
 }
 

@@ -5,6 +5,7 @@
 
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::ports::Port;
+use lang_text::problem::Problem;
 use std::collections::BTreeMap;
 
 /// What a motor does.
@@ -144,6 +145,10 @@ impl Brick for Driven<'_> {
 
     fn ask(&mut self, question: Question<'_>) -> Answer {
         self.robot.ask(question)
+    }
+
+    fn asks_again(&mut self, question: Question<'_>, why: &[Problem]) -> bool {
+        self.robot.asks_again(question, why)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::program::child;
 use crate::protocol::program::mailbox::Question;
 use lang_diagram::brick::{self, Answer, Command, Figure};
 use lang_diagram::ports::Port;
+use lang_text::problem::{Locale, Problem};
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoroshiro64Star;
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -39,6 +40,8 @@ pub struct Robot<'a> {
     told: HashSet<String>,
     random: Random,
     asking: Asking,
+    /// The language of what a person is told.
+    locale: Locale,
 }
 
 /// Random numbers; the generator is one for processors of 32 bits.
@@ -62,8 +65,8 @@ impl Random {
 }
 
 impl<'a> Robot<'a> {
-    /// The robot over a tree, on which a question waits for so long. Opens nothing yet.
-    pub fn new(brick: &'a Brick, host: &'a Host, patience: Duration) -> Self {
+    /// The robot over a tree, on which a question waits for so long and is asked in this language. Opens nothing yet.
+    pub fn new(brick: &'a Brick, host: &'a Host, patience: Duration, locale: Locale) -> Self {
         Self {
             brick,
             host,
@@ -75,6 +78,7 @@ impl<'a> Robot<'a> {
             told: HashSet::new(),
             random: Random::new(),
             asking: Asking::new(patience),
+            locale,
         }
     }
 
@@ -297,6 +301,20 @@ impl brick::Brick for Robot<'_> {
                 // The daemon may be gone; then this process ends soon.
                 let _ = host.question(number, json);
             })
+    }
+
+    fn asks_again(&mut self, question: brick::Question<'_>, why: &[Problem]) -> bool {
+        let said: Vec<String> = why.iter().map(|one| one.said(self.locale)).collect();
+        let host = self.host;
+        self.asking.again(
+            question,
+            &said.join("\n"),
+            Instant::now(),
+            &mut |number, json| {
+                // As of the question itself.
+                let _ = host.question(number, json);
+            },
+        )
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {

@@ -3,7 +3,9 @@
 //! Owns which diagram is meant, and what clients hear if none runs. The diagram answers by itself.
 
 use super::child::Language;
+use super::output::Manner;
 use super::queue::{Meeting, Wish};
+use super::says::cut;
 use super::{Cause, Current, Supervisor};
 use crate::clients::debugging::OrderId;
 use crate::protocol::news;
@@ -25,7 +27,7 @@ impl Supervisor {
     }
 
     /// A new version for the diagram that runs, which answers by itself.
-    pub(super) fn patch(&mut self, when_gone: WhenGone, path: &Path) {
+    pub(super) fn patch(&mut self, client: u32, when_gone: WhenGone, path: &Path) {
         let name = self.name_of(path);
         let runs = match &self.current {
             Some(current) if self.runs_diagram() => Some(current.name.clone()),
@@ -35,17 +37,48 @@ impl Supervisor {
         let why = match runs {
             None => news::NO_DIAGRAM.to_owned(),
             Some(other) if other != name => news::other_runs(&other),
-            Some(_)
-                if self.send(ToProgram::Patch {
+            Some(_) => {
+                let message = ToProgram::Patch {
                     when_gone,
                     path: &file,
-                }) =>
-            {
-                return;
+                };
+                return self.change(client, &name, message);
             }
-            Some(_) => news::TOO_MUCH.to_owned(),
         };
-        self.broadcast(&news::not_changed(&name, &why));
+        self.not_changed(client, &name, &why);
+    }
+
+    /// Sends a change to the diagram that runs, and keeps in mind whose it is.
+    fn change(&mut self, client: u32, name: &str, message: ToProgram<'_>) {
+        if let Some(current) = &mut self.current
+            && current.changes.len() < limits::DEBUG_ORDERS
+            && current.child.send(message)
+        {
+            current.changes.push_back((client, name.to_owned()));
+        } else {
+            self.not_changed(client, name, news::TOO_MUCH);
+        }
+    }
+
+    /// A refusal is for who has asked: to all others it would look like something that the program says.
+    fn not_changed(&self, client: u32, name: &str, why: &str) {
+        let told = news::not_changed(name, why);
+        self.around.clients.tell(client, told.as_bytes());
+    }
+
+    /// What has become of the oldest change. What is in force concerns everybody.
+    pub(super) fn hear_change(&mut self, is_changed: bool, text: &str) {
+        let current = self.current.as_mut();
+        let asked = current.and_then(|current| current.changes.pop_front());
+        match (is_changed, asked) {
+            (true, _) => self.show(Manner::Info, text),
+            (false, Some((client, _))) => {
+                let told = format!("error: {}", cut(text));
+                self.around.clients.tell(client, told.as_bytes());
+            }
+            // A program answers nothing that nobody has asked.
+            (false, None) => {}
+        }
     }
 
     /// A question of the diagram, for everybody who answers questions.
@@ -71,10 +104,11 @@ impl Supervisor {
     }
 
     /// An assignment for the diagram that runs, `NAME=EXPRESSION`.
-    pub(super) fn set(&mut self, text: &str) {
-        if !self.runs_diagram() || !self.send(ToProgram::Set(text)) {
-            let name = text.split('=').next().unwrap_or_default().trim();
-            self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
+    pub(super) fn set(&mut self, client: u32, text: &str) {
+        let name = text.split('=').next().unwrap_or_default().trim();
+        match self.runs_diagram() {
+            true => self.change(client, name, ToProgram::Set(text)),
+            false => self.not_changed(client, name, news::NO_DIAGRAM),
         }
     }
 
@@ -187,6 +221,9 @@ impl Supervisor {
     pub(super) fn end_debugger(&self, current: &mut Current) {
         for asked in current.orders.drain(..) {
             self.refuse(asked, news::HAS_ENDED);
+        }
+        for (client, name) in current.changes.drain(..) {
+            self.not_changed(client, &name, news::HAS_ENDED);
         }
         if self.last.has_debugger() {
             self.around.clients.tell_state(news::GONE);

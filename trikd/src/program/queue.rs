@@ -23,10 +23,10 @@ pub enum Command {
     Script(String),
     /// Evaluate this text after the ones before it.
     Direct(String),
-    /// Replace the diagram that runs by this file.
-    Patch(WhenGone, PathBuf),
-    /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
-    Set(String),
+    /// Replace the diagram that runs by this file, for the client of this number.
+    Patch(u32, WhenGone, PathBuf),
+    /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`, for the client of this number.
+    Set(u32, String),
     /// What a person says to the question with this number; none: nobody answers.
     Reply(u32, Option<String>),
     /// Something that a client wants who debugs; each has an answer.
@@ -180,7 +180,7 @@ fn outlives_stop(command: &mut Command) -> bool {
         | Command::Script(_)
         | Command::Direct(_)
         | Command::Patch(..)
-        | Command::Set(_)
+        | Command::Set(..)
         | Command::Reply(..)
         | Command::DebugLeft
         | Command::Stop(_)

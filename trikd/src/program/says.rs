@@ -16,11 +16,7 @@ impl Supervisor {
             return;
         };
         let now = Instant::now();
-        let mut end = text.len().min(limits::MESSAGE_BYTES);
-        while !text.is_char_boundary(end) {
-            end -= 1;
-        }
-        let shown = current.meter.offer(Message::new(manner, &text[..end]), now);
+        let shown = current.meter.offer(Message::new(manner, cut(text)), now);
         self.show_held();
         if let Some(said) = shown {
             self.say(&said);
@@ -95,4 +91,9 @@ impl Supervisor {
             }
         }
     }
+}
+
+/// The beginning of a text that is longer than a message may be.
+pub(super) fn cut(text: &str) -> &str {
+    &text[..text.floor_char_boundary(limits::MESSAGE_BYTES)]
 }

@@ -124,7 +124,10 @@ impl Session {
             return;
         }
         match scripts::find(&self.control.scripts, name) {
-            Ok(path) => self.command(Command::Patch(when_gone, path)).await,
+            Ok(path) => {
+                self.command(Command::Patch(self.client.id(), when_gone, path))
+                    .await
+            }
             Err(why) => self.error(&why.to_string()),
         }
     }
@@ -214,7 +217,8 @@ impl Handler for Session {
             Request::Patch { when_gone, name } => self.patch(when_gone, name).await,
             Request::Set(assignment) => {
                 if self.may_control() {
-                    self.command(Command::Set(text(assignment))).await;
+                    let asker = self.client.id();
+                    self.command(Command::Set(asker, text(assignment))).await;
                 }
             }
             Request::Questions(is_wanted) => {

@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 
 /// M1 at 40 percent, a variable that counts, a wait, and on.
-fn counting() -> Vec<u8> {
+pub fn counting() -> Vec<u8> {
     counting_by("n = n + 1")
 }
 
@@ -25,7 +25,8 @@ fn counting_by(body: &str) -> Vec<u8> {
     sketch.qrs().expect("a save")
 }
 
-fn upload(client: &mut Client, name: &str, save: &[u8]) {
+/// Sends a save to a robot.
+pub fn upload(client: &mut Client, name: &str, save: &[u8]) {
     let head = format!("file:{name}:");
     client.raw(format!("{}:{head}", head.len() + save.len()));
     client.raw(save);
@@ -348,7 +349,7 @@ fn the_oddities_of_the_original_are_kept_or_mended_as_the_robot_is_told() {
 }
 
 /// The number of the next line that the program prints.
-fn printed(client: &mut Client) -> i64 {
+pub fn printed(client: &mut Client) -> i64 {
     let line = client.until("print: ");
     let number = line.trim_start_matches("print: ").trim();
     number.parse().expect("a number")
@@ -401,7 +402,14 @@ fn what_is_wrong_changes_nothing_and_says_where() {
     upload(&mut client, "count.qrs", &counting_by("n = n +"));
     client.send("patch:end:count.qrs");
     let told = client.until("error: count.qrs is not changed: ");
-    assert!(told.contains("'Expression', "), "{told}");
+    assert!(
+        told.contains("main: Function (300, 0): 'Expression', 1:"),
+        "{told}"
+    );
+    // Who has not asked for it sees what the program says, and nothing else.
+    let mut other = robot.client("control");
+    other.send("version");
+    other.until("version: ");
     upload(&mut client, "count.qrs", &counting_by("n = 'text'"));
     client.send("patch:end:count.qrs");
     client.until("error: count.qrs is not changed: ");
@@ -419,15 +427,24 @@ fn what_is_wrong_changes_nothing_and_says_where() {
         "set:n; x=1",
         "set:=",
         "set:n=",
+        "set:n=99999999999999999999",
+        "set:m=1",
     ] {
         client.send(wrong);
         client.until("error: ");
     }
+    client.send("set:N=1");
+    let told = client.until("error: N is not changed: ");
+    assert!(told.ends_with("it has: n; did you mean 'n'?"), "{told}");
     for unknown in ["patch:count.qrs", "patch:maybe:count.qrs", "patch:"] {
         client.send(unknown);
     }
     let before = printed(&mut client);
     assert_eq!(printed(&mut client), before + 1);
+    other.send("version");
+    while let Some(heard) = other.next().filter(|heard| !heard.starts_with("version: ")) {
+        assert!(heard.starts_with("print: "), "{heard}");
+    }
     client.send("stop");
     client.until("info: count.qrs was stopped by a client");
 }
@@ -504,7 +521,13 @@ fn a_diagram_asks_a_person_and_goes_on_if_nobody_is_there() {
     person.send("run:ask.qrs");
     person.expect("info: ask.qrs has started");
     person.until("question: {\"number\":1,");
-    person.send("answer:1");
+    for (number, answer) in [(1, "nonsense"), (2, "2 +"), (3, "'text'")] {
+        person.send(&format!("answer:{number}:{answer}"));
+        let next = format!("question: {{\"number\":{},\"variable\":\"n\",", number + 1);
+        let asked = person.until(&next);
+        assert!(asked.contains("\"wrong\":\""), "{asked}");
+    }
+    person.send("answer:4");
     person.send("noquestions");
     person.until("print: 7\n");
 }

@@ -51,3 +51,5 @@ mod services;
 mod soak;
 /// Uploads.
 mod uploads;
+/// New versions of a diagram that runs.
+mod versions;

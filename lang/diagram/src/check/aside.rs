@@ -4,13 +4,16 @@
 //! types that never fit, and what would change the run. Computes nothing.
 
 use super::{Flow, each_node, given, taught};
-use crate::program::Program;
+use crate::machine::wanted;
+use crate::program::{Leads, Program};
 use crate::words;
 use lang_expr::reserved::SENSORS;
 use lang_expr::tree::{Node as Part, Tree};
 use lang_expr::words::{Fault, Reason};
 use lang_expr::{Kind, Names, Source, Wanted};
 use lang_text::problem::{Place, Position, Problem, Words};
+use std::collections::BTreeSet;
+use std::rc::Rc;
 
 /// Functions that an expression cannot have that is only looked at.
 const ACTIVE: [&str; 2] = ["print", "random"];
@@ -54,7 +57,7 @@ pub(crate) fn mistakes(known: &Known<'_>, text: &str) -> Vec<Problem> {
         }
     });
     if lang_expr::analyse(&mut source, &mut known.names.clone()).is_ok() && lacking.is_empty() {
-        return Vec::new();
+        return source.odd_numbers();
     }
     // Perhaps the program has not come to what teaches a name.
     let mut names = known.names.clone();
@@ -64,17 +67,17 @@ pub(crate) fn mistakes(known: &Known<'_>, text: &str) -> Vec<Problem> {
     lacking.retain(|(name, _)| !given.contains(name));
     if !lacking.is_empty() {
         lacking.sort_by_key(|(_, at)| *at);
-        let faults = lacking.into_iter().map(|(name, at)| {
-            let reason = Reason::Undeclared(name.to_string());
-            Fault::new(reason, at).problem()
+        let problems = lacking.into_iter().map(|(name, at)| {
+            let fault = Fault::new(Reason::Undeclared(name.to_string()), at);
+            lang_expr::explained(&fault, source.tree(), &names)
         });
-        return faults
+        return problems
             .take(lang_expr::limits::EXPRESSION_PROBLEMS_MAX)
             .collect();
     }
     let mut source = Source::new(text, Wanted::Any);
     let Err(found) = lang_expr::analyse(&mut source, &mut names) else {
-        return Vec::new();
+        return source.odd_numbers();
     };
     let mut is_known = true;
     each_node(source.tree(), &mut |_, part, _| {
@@ -85,6 +88,50 @@ pub(crate) fn mistakes(known: &Known<'_>, text: &str) -> Vec<Problem> {
     // What a message brings is known when it is there.
     let is_certain = is_known || source.tree().root.is_none();
     if is_certain { found } else { Vec::new() }
+}
+
+/// Why a person cannot give this variable a value: neither the program's text has it, nor has it a value. Sensors and what
+/// never changes are for the language of expressions to refuse.
+pub(crate) fn no_assignment(known: &Known<'_>, name: &str) -> Option<Problem> {
+    if !known.lacks(name) {
+        return None;
+    }
+    let program = known.program;
+    let mut said: BTreeSet<Rc<str>> = BTreeSet::new();
+    // Blocks that nothing leads to are text of the program all the same, as are names that are only read.
+    for text in &program.sources {
+        let source = Source::new(&text.text, wanted(text.wanted));
+        said.extend(source.names().map(Rc::from));
+    }
+    for node in (0..).take(program.len()) {
+        if let Some((assignment, _)) = program.given(node) {
+            said.insert((&*assignment.variable).into());
+        }
+        if let Some(Leads::Call(call, _)) = program.leads(node) {
+            let arguments = call.arguments.iter();
+            said.extend(arguments.map(|argument| Rc::from(&*argument.name)));
+        }
+    }
+    let valued = known.names.variables();
+    let valued = valued.filter(|(_, name, _)| (known.has_value)(name));
+    said.extend(valued.map(|(_, name, _)| Rc::from(name)));
+    said.retain(|name| matches!(known.kind(name), Some(Kind::Variable) | None));
+    let all: Vec<&str> = said.iter().map(|name| &**name).collect();
+    (!all.contains(&name)).then(|| Problem::error(words::no_variable(name, &all)))
+}
+
+/// Whether a statement that gives a variable the answer of a person fights with what the program's texts do with it,
+/// whichever of them the program has come to.
+pub(crate) fn fights(known: &Known<'_>, variable: &str, statement: &str) -> bool {
+    let mut names = known.names.clone();
+    taught(known.program, &Flow::of(known.program), &mut names);
+    let is_good = |statement: &str| {
+        let mut source = Source::new(statement, Wanted::Statements);
+        lang_expr::analyse(&mut source, &mut names.clone()).is_ok()
+    };
+    // Texts that fight among themselves leave no good answer, which is not the fault of this one.
+    let others = ["0", "''"].map(|text| format!("{variable} = {text}"));
+    !is_good(statement) && others.iter().any(|other| is_good(other))
 }
 
 /// What is wrong with a name as one of a variable or a sensor of the program.

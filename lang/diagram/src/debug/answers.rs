@@ -5,6 +5,7 @@
 
 use crate::brick::{Answer, Brick, Command, Question};
 use crate::ports::Port;
+use lang_text::problem::Problem;
 
 /// One answer of a robot.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -18,6 +19,7 @@ enum Answered {
     Letter(Option<(Option<i32>, Box<str>)>),
     Contents(Option<Box<str>>),
     Person(Box<Answer>),
+    Again(bool),
 }
 
 /// The answers of a step in their order.
@@ -43,7 +45,8 @@ impl Answers {
             | Answered::Random(_)
             | Answered::Mail(None)
             | Answered::Letter(None)
-            | Answered::Contents(None) => 0,
+            | Answered::Contents(None)
+            | Answered::Again(_) => 0,
         });
         self.0.len() * size_of::<Answered>() + apart.sum::<usize>()
     }
@@ -131,6 +134,12 @@ impl Brick for Noting<'_> {
         let answer = self.robot.ask(question);
         self.note(Answered::Person(Box::new(answer.clone())));
         answer
+    }
+
+    fn asks_again(&mut self, question: Question<'_>, why: &[Problem]) -> bool {
+        let asks = self.robot.asks_again(question, why);
+        self.note(Answered::Again(asks));
+        asks
     }
 }
 
@@ -275,5 +284,16 @@ impl Brick for Remembering<'_> {
             }
         });
         answer.unwrap_or(Answer::Waiting)
+    }
+
+    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
+        let asks = self.next(|answered| {
+            if let Answered::Again(asks) = answered {
+                Some(*asks)
+            } else {
+                None
+            }
+        });
+        asks.unwrap_or(false)
     }
 }

@@ -256,7 +256,8 @@ impl Step {
     }
 }
 
-fn shortened(text: &str) -> Box<str> {
+/// The beginning of a word that may be very long.
+pub(crate) fn shortened(text: &str) -> Box<str> {
     text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
 }
 

@@ -55,19 +55,30 @@ enum Follow {
 
 struct Planner<'a> {
     program: &'a Program,
+    wanted: For,
     threads: BTreeMap<Owner, BTreeSet<Rc<str>>>,
     problems: BTreeMap<Node, Problem>,
     /// Fresh names of threads without one.
     fresh: HashMap<(Node, usize), Rc<str>>,
 }
 
+/// Who wants to know the functions of a program.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum For {
+    /// A person, who is shown every block.
+    Show,
+    /// A generator for the language of this name.
+    Generator(&'static str),
+}
+
 /// The functions of a program; problems where it cannot be told what happens.
-pub(crate) fn plan(program: &Program) -> Result<Plan, Vec<Problem>> {
+pub(crate) fn plan(program: &Program, wanted: For) -> Result<Plan, Vec<Problem>> {
     if program.len() > limits::GENERATED_BLOCKS_MAX {
         return Err(vec![Problem::error(words::too_many_blocks(program.len()))]);
     }
     let mut planner = Planner {
         program,
+        wanted,
         threads: BTreeMap::new(),
         problems: BTreeMap::new(),
         fresh: HashMap::new(),
@@ -218,10 +229,14 @@ impl Planner<'_> {
                     Exit::End
                 }
             },
-            Some(Leads::Ask(..)) => {
-                self.fail(node, words::no_questions());
-                Exit::End
-            }
+            Some(Leads::Ask(next, cancel)) => match self.wanted {
+                For::Generator(language) => {
+                    self.fail(node, words::no_questions(language));
+                    Exit::End
+                }
+                For::Show if cancel == NOWHERE => Exit::Step(next as usize),
+                For::Show => Exit::Test(next as usize, cancel as usize),
+            },
         };
         Follow::Ways(ways)
     }

@@ -49,10 +49,14 @@ pub(super) fn no_subprogram() -> Words {
     )
 }
 
-pub(super) fn no_questions() -> Words {
+pub(super) fn no_questions(language: &str) -> Words {
     Words::new(
-        "The block Input asks the person at the editor, whom a program on the robot cannot ask. Use a variable instead.",
-        "Блок «Ввод» спрашивает человека за редактором; программа на роботе спросить его не может. Используйте переменную.",
+        format!(
+            "The block Input asks the person at the editor, whom a program in {language} on the robot cannot ask. Use a variable instead."
+        ),
+        format!(
+            "Блок «Ввод» спрашивает человека за редактором; программа на языке {language} на роботе спросить его не может. Используйте переменную."
+        ),
     )
 }
 

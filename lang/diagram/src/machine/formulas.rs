@@ -131,7 +131,7 @@ impl Formulas {
         Ok(())
     }
 
-    /// The value of a text that belongs to no block.
+    /// The value of a text that belongs to no block, but that a person has just typed: what is odd in it is refused.
     pub fn evaluate_text(
         &mut self,
         text: &str,
@@ -140,6 +140,10 @@ impl Formulas {
     ) -> Result<Value, Vec<Problem>> {
         let mut source = Source::new(text, wanted);
         lang_expr::analyse(&mut source, &mut self.names)?;
+        let odd = source.odd_numbers();
+        if !odd.is_empty() {
+            return Err(odd);
+        }
         lang_expr::evaluate(&source, &self.names, &mut self.store, outside)
     }
 

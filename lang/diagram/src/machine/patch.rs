@@ -112,19 +112,38 @@ impl Version {
     /// # Errors
     /// All mistakes, if there is an error among them.
     pub fn of(project: &Project, world: World) -> Result<Self, Refused> {
-        let is_error = |problem: &Problem| problem.severity == Severity::Error;
-        let problems = check(project, world);
-        if problems.iter().any(is_error) {
-            let errors = problems.into_iter().filter(is_error).collect();
-            return Err(Refused::Mistakes(errors));
-        }
+        Self::mistakes(project, world)?;
+        Self::of_checked(project, world)
+    }
+
+    /// The version of a project that [`Version::mistakes`] has found good, which takes a small part of the time.
+    ///
+    /// # Errors
+    /// The project cannot be run at all.
+    pub fn of_checked(project: &Project, world: World) -> Result<Self, Refused> {
+        let lowered = lower(project, world).map_err(|problem| Refused::Mistakes(vec![problem]))?;
+        Ok(Self {
+            program: Rc::new(lowered.program),
+        })
+    }
+
+    /// What is wrong with a project whatever runs; another thread may look for it.
+    ///
+    /// # Errors
+    /// All mistakes, if there is an error among them.
+    pub fn mistakes(project: &Project, world: World) -> Result<(), Refused> {
         let Lowered { program, .. } =
             lower(project, world).map_err(|problem| Refused::Mistakes(vec![problem]))?;
-        match &program.refusal {
-            Some(problem) => Err(Refused::Mistakes(vec![problem.clone()])),
-            None => Ok(Self {
-                program: Rc::new(program),
-            }),
+        let problems = check(project, world);
+        let errors: Vec<Problem> = problems
+            .into_iter()
+            .filter(|problem| problem.severity == Severity::Error)
+            .chain(program.refusal.clone())
+            .map(|problem| located(&program, problem))
+            .collect();
+        match errors.is_empty() {
+            true => Ok(()),
+            false => Err(Refused::Mistakes(errors)),
         }
     }
 }
@@ -267,7 +286,7 @@ impl Machine {
             let node = moves.missed_by(thread)?;
             let mut problem = Problem::error(words::block_gone(&thread.name));
             problem.place = old.place(node);
-            Some((handle, problem))
+            Some((handle, located(old, problem)))
         });
         found.collect()
     }
@@ -393,6 +412,19 @@ fn move_thread(thread: &mut Thread, moves: &Moves) {
     }
 }
 
+/// A problem whose block a person finds on the sheet: there may be many of the same type.
+fn located(program: &Program, mut problem: Problem) -> Problem {
+    let object = problem.place.object.as_deref();
+    let mut spots = program.spots.iter();
+    if let Some(spot) = spots.find(|spot| object == Some(&*spot.id))
+        && let Some(block) = &mut problem.place.block
+    {
+        let (x, y) = spot.position;
+        block.push_str(&format!(" ({x:.0}, {y:.0})"));
+    }
+    problem
+}
+
 /// Expressions that the old version did not have and that fight with the types that variables have by now.
 fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> {
     let known: HashSet<&str> = old.sources.iter().map(|text| &*text.text).collect();
@@ -412,7 +444,7 @@ fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> 
             }
             problem.place.property = Some(text.property.to_owned());
             problem.place.position = position;
-            found.push(problem);
+            found.push(located(new, problem));
         }
     }
     found.truncate(lang_text::limits::PROBLEMS);

@@ -66,23 +66,45 @@ impl Machine {
         statement: &str,
         env: &mut Env<'_>,
     ) -> bool {
+        let ran = self.ran_text(thread, statement, env);
+        ran.map_err(|problems| self.tell_all(node, "", problems, env))
+            .is_ok()
+    }
+
+    /// The same for a statement with what a person has said, which has no place in the block.
+    pub(super) fn run_spoken(
+        &mut self,
+        node: Node,
+        thread: u16,
+        statement: &str,
+        env: &mut Env<'_>,
+    ) -> bool {
+        let ran = self.ran_text(thread, statement, env);
+        let told = ran.map_err(|problems| {
+            for mut problem in problems {
+                problem.place = self.program.place(node);
+                self.report(problem, env);
+            }
+        });
+        told.is_ok()
+    }
+
+    fn ran_text(
+        &mut self,
+        thread: u16,
+        statement: &str,
+        env: &mut Env<'_>,
+    ) -> Result<(), Vec<Problem>> {
         let mut robot = Robot {
             sensors: &mut self.sensors,
             brick: env.brick,
             now: self.now,
         };
-        match self.formulas.run_text(statement, &mut robot) {
-            Ok(()) => {
-                let now = self.now;
-                self.formulas
-                    .changed(|name, value| env.trace.changed(now, thread, name, value));
-                true
-            }
-            Err(problems) => {
-                self.tell_all(node, "", problems, env);
-                false
-            }
-        }
+        self.formulas.run_text(statement, &mut robot)?;
+        let now = self.now;
+        self.formulas
+            .changed(|name, value| env.trace.changed(now, thread, name, value));
+        Ok(())
     }
 
     /// Errors of an expression of the program, at its block and property.

@@ -212,6 +212,36 @@ impl Machine {
         reading.or_else(|| self.variable(name))
     }
 
+    /// What is wrong with the answer of a person for this variable, as far as that can be known without the robot; nothing,
+    /// if it may be good.
+    pub(super) fn wrong_answer(
+        &self,
+        variable: &str,
+        text: &str,
+        may_be_empty: bool,
+    ) -> Vec<Problem> {
+        if text.is_empty() {
+            return match may_be_empty {
+                true => Vec::new(),
+                false => vec![Problem::error(words::must_answer())],
+            };
+        }
+        let opening = format!("{variable} = ");
+        let statement = format!("{opening}{text}");
+        let mut formulas = self.formulas.clone();
+        let mut robot = Onlooker {
+            machine: self,
+            lacking: None,
+        };
+        if let Err(problems) = formulas.run_text(&statement, &mut robot) {
+            return without(&opening, problems);
+        }
+        match self.known(|known| aside::fights(known, variable, &statement)) {
+            true => vec![Problem::error(words::answer_does_not_fit(variable))],
+            false => Vec::new(),
+        }
+    }
+
     /// Assigns a variable as a block with this expression would; the trace hears it as the doing of a thread.
     pub fn assign(
         &mut self,
@@ -223,6 +253,9 @@ impl Machine {
     ) -> Result<(), Vec<Problem>> {
         if !is_name(variable) {
             return Err(vec![Problem::error(words::no_name(variable))]);
+        }
+        if let Some(problem) = self.known(|known| aside::no_assignment(known, variable)) {
+            return Err(vec![problem]);
         }
         // Its errors have columns of this text. In brackets it is one expression and no statement after it.
         self.evaluate_aside(text)?;

@@ -278,21 +278,31 @@ impl Machine {
             return;
         };
         let assignment = &program.assignments[assignment as usize];
-        let answer = env.brick.ask(Question {
+        let question = Question {
             variable: &assignment.variable,
             prompt: &assignment.prompt,
             default: &assignment.default,
-        });
-        let text = match answer {
-            Answer::Waiting => return,
-            Answer::Text(text) if text.is_empty() => assignment.default.to_string(),
-            Answer::Text(text) => text,
-            Answer::Cancelled => String::new(),
         };
+        let (text, is_answer) = match env.brick.ask(question) {
+            Answer::Waiting => return,
+            Answer::Text(text) if text.is_empty() => (assignment.default.to_string(), true),
+            Answer::Text(text) => (text, true),
+            Answer::Cancelled => (String::new(), false),
+        };
+        if is_answer {
+            let wrong = self.wrong_answer(&assignment.variable, &text, cancel != NOWHERE);
+            if !wrong.is_empty() && env.brick.asks_again(question, &wrong) {
+                return;
+            }
+        }
         self.drop_clock(node);
         if !text.is_empty() {
             let statement = format!("{} = {text}", assignment.variable);
-            if self.assign_for_waiting(node, &statement, env) {
+            let is_good = self.run_answer(node, &statement, env);
+            if !is_good {
+                self.fail_all_at(node, env);
+            }
+            if is_good {
                 self.lead(node, next);
             }
         } else if cancel != NOWHERE {
@@ -303,6 +313,14 @@ impl Machine {
             env.trace.trap(self.now, &problem);
             self.lead(node, node);
         }
+    }
+
+    /// Runs an answer for the thread that waits for it; false after an error, whose place is the block: nobody has written
+    /// the answer into it.
+    fn run_answer(&mut self, node: Node, statement: &str, env: &mut Env<'_>) -> bool {
+        let waiting = self.threads.waiting_at(node);
+        let slot = waiting.first().map_or(0, |handle| handle.slot);
+        self.run_spoken(node, slot, statement, env)
     }
 
     /// Whether anything answers on a port.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use super::words::Word;
 use super::{details, name};
 use crate::blocks::Row;
-use crate::generate::plan::{Function, Owner, plan};
+use crate::generate::plan::{For, Function, Owner, plan};
 use crate::lower::{World, lower};
 use crate::program::{Leads, Node, Op, Program, Test};
 use crate::project::{Block, Diagram, DiagramKind, Project};
@@ -41,7 +41,7 @@ pub fn outline(project: &Project, locale: Locale) -> Result<String, Vec<Problem>
 pub fn lines(project: &Project, locale: Locale) -> Result<Vec<Line>, Vec<Problem>> {
     let lowered = lower(project, World::Robot).map_err(|problem| vec![problem])?;
     let program = &lowered.program;
-    let plan = plan(program)?;
+    let plan = plan(program, For::Show)?;
     let blocks = project.diagrams.iter().flat_map(|diagram| &diagram.blocks);
     let mut writer = Writer {
         program,
@@ -259,7 +259,30 @@ impl<'a> Writer<'a> {
 
     /// What a block decides by.
     fn test(&self, block: usize) -> String {
-        self.block(block).map(details).unwrap_or_default()
+        let Some(shown) = self.block(block) else {
+            return String::new();
+        };
+        let node = self.node(block);
+        match node.and_then(|node| self.program.leads(node)) {
+            // Which way is taken is not in the block, but with who answers.
+            Some(Leads::Ask(..)) => format!(
+                "{} {}: {}",
+                self.word(Word::Answered),
+                name(shown, self.locale),
+                details(shown)
+            ),
+            Some(
+                Leads::End
+                | Leads::Fault(_)
+                | Leads::To(_)
+                | Leads::Test(..)
+                | Leads::Switch(_)
+                | Leads::Fork(_)
+                | Leads::Join(..)
+                | Leads::Call(..),
+            )
+            | None => details(shown),
+        }
     }
 
     fn condition(&self, when: &Condition) -> String {

@@ -35,6 +35,22 @@ fn an_outline_has_loops_and_names_in_both_languages() {
 }
 
 #[test]
+fn an_outline_has_questions_with_and_without_a_way_for_no_answer() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let first = sketch.block("Input", &[("variable", "n"), ("prompt", "How many?")]);
+    let second = sketch.block("Input", &[("variable", "m"), ("default", "2")]);
+    let said = sketch.block("Function", &[("Body", "print(n * m)")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, first, second, said, end]);
+    sketch.guarded(second, end, "cancel");
+    let text = outline(&sketch.project(), Locale::English).unwrap();
+    let first = "Program:\n  Input: n, How many?\n";
+    let way = "  If there is an answer to Input: m, 2:\n    Function: print(n * m)\n";
+    assert!(text.starts_with(&format!("{first}{way}")), "{text}");
+}
+
+#[test]
 fn a_picture_has_blocks_links_guards_and_words() {
     let svg = picture(&project("M3").diagrams[0], Locale::English);
     insta::assert_snapshot!("picture", svg);

@@ -45,6 +45,8 @@ pub enum Word {
     Place,
     /// Begins a thread.
     Begin,
+    /// Before a question to a person.
+    Answered,
 }
 
 impl Word {
@@ -71,6 +73,7 @@ impl Word {
             Self::Not => ("not", "не"),
             Self::Place => ("place", "место"),
             Self::Begin => ("Begin the thread", "Запустить поток"),
+            Self::Answered => ("there is an answer to", "есть ответ на"),
         };
         match locale {
             Locale::English => english,

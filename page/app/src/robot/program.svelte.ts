@@ -29,6 +29,8 @@ export interface Question {
   default?: string;
   /** How long it waits for its answer. */
   seconds?: number;
+  /** What was wrong with the last answer to it. */
+  wrong?: string;
 }
 
 /** Lines of output that are kept, and letters of one of them. */

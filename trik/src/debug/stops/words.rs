@@ -171,6 +171,27 @@ pub(crate) fn past() -> Words {
     Words::new("past, ", "прошлое, ")
 }
 
+pub(crate) fn is_stopped(why: &str) -> Words {
+    Words::new(
+        format!("stopped by a debugger: {why}"),
+        format!("остановлена отладчиком: {why}"),
+    )
+}
+
+pub(crate) fn is_past(time: &str, why: &str) -> Words {
+    Words::new(
+        format!("stopped, and this is its past as it was at {time}: {why}"),
+        format!("остановлена, показано её прошлое в {time}: {why}"),
+    )
+}
+
+pub(crate) fn is_searched() -> Words {
+    Words::new(
+        "stopped, and a debugger searches its past",
+        "остановлена, отладчик ищет в её прошлом",
+    )
+}
+
 pub(crate) fn thread(name: &str) -> Words {
     Words::new(format!(", thread {name}"), format!(", поток {name}"))
 }

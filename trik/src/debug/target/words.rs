@@ -57,7 +57,7 @@ fn whole(text: &str) -> Option<&'static str> {
 }
 
 /// Sentences with names and numbers, which stand for `{}`, in English and Russian; the first that fits counts.
-const TEMPLATES: [[&str; 2]; 34] = [
+const TEMPLATES: [[&str; 2]; 35] = [
     ["{} is not changed: {}", "{} не изменена: {}"],
     ["{} is changed: {}", "{} изменена: {}"],
     ["{} has started", "{} запущена"],
@@ -169,6 +169,10 @@ const TEMPLATES: [[&str; 2]; 34] = [
     [
         "{}; what runs goes on as it is",
         "{}; то, что выполняется, идёт дальше",
+    ],
+    [
+        "{}: {} bytes long, and a robot takes at most {} in one message (about {} MiB)",
+        "{}: длина {} байт, а в одном сообщении роботу можно передать не больше {} (около {} МиБ)",
     ],
 ];
 

@@ -305,7 +305,9 @@ fn another_main_diagram_is_checked_debugged_and_written_as_a_converter() {
     board.file("large.flow", large);
     let large = debug(&board, &["run", "large.flow"], "");
     assert!(
-        large.stderr.contains("longer than 16 MiB"),
+        large
+            .stderr
+            .contains("and a robot takes at most 16776192 in one message"),
         "{}",
         large.stderr
     );

@@ -117,7 +117,7 @@ fn commands_about_a_program_that_runs_speak_russian_to_who_wants_it() {
     let all = running.said();
     let last = all.lines().last().expect("a line");
     assert!(
-        last.contains("main: Function: ") && last.contains(" 1:7 "),
+        last.contains("main: Function (") && last.contains(" 1:7 "),
         "{all}"
     );
     assert!(!last.contains("Unexpected"), "{all}");

@@ -145,6 +145,8 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
         ("set n=", "Variable n"),
         ("set n=\"a\"", ""),
         ("evaluate 1 +", ""),
+        ("evaluate m + 1", "Nothing has given 'm' a value"),
+        ("evaluate 99999999999999999999", "counts as 0"),
     ] {
         let answer = stage.order(order);
         assert!(answer.ends_with("\"done\":false}"), "{order}: {answer}");
@@ -152,6 +154,23 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
             answer.contains(why) || order.starts_with("set"),
             "{order}: {answer}"
         );
+    }
+    for (order, why) in [
+        (
+            "set step=1",
+            "the program has no variable 'step'; it has: n\"",
+        ),
+        (
+            "set N=1",
+            "the program has no variable 'N'; it has: n; did you mean 'n'?",
+        ),
+        (
+            "set n=99999999999999999999",
+            "1:1 The number 99999999999999999999 counts as 0.",
+        ),
+    ] {
+        let answer = stage.order(order);
+        assert!(answer.contains(why), "{order}: {answer}");
     }
     let long = "x".repeat(limits::CONDITION_MAX + 1);
     let answer = stage.order(&format!("break {}\nif {long}", ids[2]));

@@ -374,7 +374,40 @@ fn a_person_is_asked_until_he_answers() {
     assert_eq!(asked("2 + 3").text("x"), "5");
     assert_eq!(asked("").text("x"), "9");
     assert_eq!(run(&sketch, 1000).end(), None);
-    assert!(asked("nonsense").errors()[0].contains("Undeclared identifier"));
+    let nonsense = asked("nonsense").errors();
+    assert!(
+        nonsense[0].contains("main: Input: Undeclared identifier"),
+        "{nonsense:?}"
+    );
+}
+
+#[test]
+fn a_wrong_answer_is_asked_for_once_more_before_the_program_fails() {
+    let question = [("variable", "x")];
+    let sketch = chain(&[("Input", &question), ("Function", &[("Body", "y = x * 2")])]);
+    let asked = |answers: &[&'static str], second_chances| {
+        let answers: Vec<String> = answers.iter().map(|text| (*text).into()).collect();
+        let answer = move |robot: &mut StandIn| {
+            robot.answers.extend(answers.clone());
+            robot.second_chances = second_chances;
+        };
+        run_with(
+            &sketch,
+            1000,
+            Options::simulated(),
+            World::default(),
+            answer,
+        )
+    };
+    // A name, nothing at all, a text where the program computes, and half an expression.
+    let ran = asked(&["nonsense", "", "'five'", "2 +", "21"], 4);
+    assert_eq!((ran.text("y").as_str(), ran.errors().len()), ("42", 0));
+    let ran = asked(&["nonsense", "'five'"], 1);
+    let errors = ran.errors();
+    assert!(
+        errors[0].contains("main: Function: 'Expression'"),
+        "{errors:?}"
+    );
 }
 
 #[test]
