@@ -15,11 +15,35 @@ use mcap::sans_io::{
 use std::io::{Read, Seek, SeekFrom};
 
 /// Bytes of a footer with its head, and of the magic after it.
-pub(super) const FOOTER_BYTES: u64 = 9 + 20;
-pub(super) const MAGIC_BYTES: u64 = 8;
+const FOOTER_BYTES: u64 = 9 + 20;
+const MAGIC_BYTES: u64 = 8;
+
+/// The summary of a recording.
+///
+/// # Errors
+/// It is none, it is cut, or its end contradicts itself.
+pub(crate) fn summary_of<F: Read + Seek>(file: &mut F) -> Result<Summary, Error> {
+    let size = file.seek(SeekFrom::End(0))?;
+    file.rewind()?;
+    let mut magic = [0; MAGIC_BYTES as usize];
+    let begins = file.read_exact(&mut magic);
+    if begins.is_err() || magic != *mcap::MAGIC {
+        return Err(Error::NotARecording);
+    }
+    if size < 2 * MAGIC_BYTES + FOOTER_BYTES {
+        return Err(Error::Cut);
+    }
+    file.seek(SeekFrom::End(-(MAGIC_BYTES as i64)))?;
+    file.read_exact(&mut magic)?;
+    if magic != *mcap::MAGIC {
+        return Err(Error::Cut);
+    }
+    check_footer(file, size)?;
+    summary(file, size)
+}
 
 /// The library trusts the footer with memory for all that follows the start of the summary.
-pub(super) fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
+fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
     let begin = size - MAGIC_BYTES - FOOTER_BYTES;
     file.seek(SeekFrom::Start(begin))?;
     let mut footer = [0; FOOTER_BYTES as usize];
@@ -75,7 +99,7 @@ fn check_summary<F: Read + Seek>(
     }
 }
 
-pub(super) fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
+fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
     let options = SummaryReaderOptions::default()
         .with_file_size(size)
         .with_record_length_limit(RECORD_BYTES_MAX);
@@ -162,7 +186,7 @@ fn read_chunk<'a, F: Read + Seek>(
     file.seek(SeekFrom::Start(index.chunk_start_offset))?;
     chunk.resize(usize::try_from(index.chunk_length).unwrap_or(0), 0);
     file.read_exact(chunk)?;
-    check_sum(chunk)?;
+    check_sum(chunk).map_err(|why| why.in_part(index.chunk_start_offset))?;
     let begin = usize::try_from(offset - index.chunk_start_offset).unwrap_or(usize::MAX);
     let end = begin.checked_add(length).ok_or_else(damaged)?;
     chunk.get(begin..end).ok_or_else(damaged)
