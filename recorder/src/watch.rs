@@ -153,12 +153,18 @@ impl Watch {
     /// The same with what sources give before it is converted, as far as the tree publishes that.
     #[must_use]
     pub fn with_raw(self, is_wanted: bool) -> Self {
-        let mut watch = Self {
-            raws: is_wanted.then(Raws::default),
-            ..self
-        };
-        watch.find_raws(&mut Vec::new());
+        let mut watch = self;
+        watch.want_raw(is_wanted, &mut Vec::new());
         watch
+    }
+
+    /// What sources give is wanted from now on, or no more; those that are new come at once.
+    pub fn want_raw(&mut self, is_wanted: bool, out: &mut Vec<Entry>) {
+        match is_wanted {
+            true => drop(self.raws.get_or_insert_default()),
+            false => self.raws = None,
+        }
+        self.find_raws(out);
     }
 
     /// Of how many nodes that is looked at.
