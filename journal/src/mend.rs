@@ -7,6 +7,7 @@
 use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
+use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
 use mcap::records::{MessageHeader, Record, op};
@@ -328,9 +329,9 @@ impl<W: Write + Seek> Target<W> {
     ) -> Result<bool, Stop> {
         let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
-        // The library takes four bytes off an attachment that it has not looked for.
-        if opcode == op::ATTACHMENT && !holds_an_attachment(data) {
-            return Err(Stop::Damage(Error::Damaged("an attachment".to_owned())));
+        if !is_whole(opcode, data) {
+            let what = "a length inside a record".to_owned();
+            return Err(Stop::Damage(Error::Damaged(what)));
         }
         let record = mcap::parse_record(opcode, data).map_err(damage)?;
         if let Record::Header(header) = &record {
@@ -455,18 +456,4 @@ fn write<W: Write + Seek>(
 fn is_new(attached: &mut HashMap<String, u32>, attachment: &Attachment<'_>) -> bool {
     let checksum = crc32fast::hash(&attachment.data);
     attached.insert(attachment.name.clone(), checksum) != Some(checksum)
-}
-
-/// Whether all parts of an attachment are there: two times, name, media type, length, bytes, checksum.
-fn holds_an_attachment(data: &[u8]) -> bool {
-    let length_at = |at: usize| -> Option<usize> {
-        let bytes = data.get(at..at.checked_add(4)?)?;
-        usize::try_from(u32::from_le_bytes(bytes.try_into().ok()?)).ok()
-    };
-    let mut at = Some(16);
-    for _ in ["name", "media type"] {
-        at = at.and_then(|at: usize| at.checked_add(4)?.checked_add(length_at(at)?));
-    }
-    at.and_then(|at| at.checked_add(8 + 4))
-        .is_some_and(|end| end <= data.len())
 }

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::layout::Layout;
 use crate::limits::{ATTACHMENT_BYTES_MAX, CHUNKS_BACK, NODES_MAX, RECORD_BYTES_MAX};
 use crate::node::{self, Node};
+use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
 pub(crate) use container::summary_of;
@@ -334,6 +335,9 @@ impl<F: Read + Seek> Reader<F> {
             Some((&op::METADATA, rest)) => rest.get(8..).ok_or_else(damaged)?,
             Some(_) | None => return Err(damaged()),
         };
+        if !is_whole(op::METADATA, body) {
+            return Err(damaged());
+        }
         let parsed = mcap::parse_record(op::METADATA, body).map_err(Error::reading)?;
         let mcap::records::Record::Metadata(metadata) = parsed else {
             return Err(damaged());

@@ -6,13 +6,14 @@
 use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{INFLATION_MAX, RECORD_BYTES_MAX, SUMMARY_BYTES_MAX};
+use crate::shape::is_whole;
 use mcap::Summary;
 use mcap::records::op;
 use mcap::sans_io::{
     IndexedReadEvent, IndexedReader, IndexedReaderOptions, SummaryReadEvent, SummaryReader,
     SummaryReaderOptions,
 };
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 
 /// Bytes of a footer with its head, and of the magic after it.
 const FOOTER_BYTES: u64 = 9 + 20;
@@ -38,12 +39,38 @@ pub(crate) fn summary_of<F: Read + Seek>(file: &mut F) -> Result<Summary, Error>
     if magic != *mcap::MAGIC {
         return Err(Error::Cut);
     }
-    check_footer(file, size)?;
+    let (start, bytes) = check_footer(file, size)?;
+    check_records(file, start, bytes)?;
     summary(file, size)
 }
 
-/// The library trusts the footer with memory for all that follows the start of the summary.
-fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
+/// The library trusts the lengths inside the records of a summary with memory.
+fn check_records<F: Read + Seek>(file: &mut F, start: u64, bytes: u64) -> Result<(), Error> {
+    let damaged = || Error::Damaged("its summary has a record that is none".to_owned());
+    file.seek(SeekFrom::Start(start))?;
+    let mut rest = BufReader::new(file.by_ref().take(bytes));
+    let (mut left, mut record) = (bytes, Vec::new());
+    while left > 0 {
+        let mut header = [0; HEADER_BYTES];
+        rest.read_exact(&mut header).map_err(|_| damaged())?;
+        let length = u64_at(&header, 1).unwrap_or(u64::MAX);
+        left = (left.checked_sub(HEADER_BYTES as u64))
+            .and_then(|left| left.checked_sub(length))
+            .ok_or_else(damaged)?;
+        if length > RECORD_BYTES_MAX as u64 {
+            return Err(damaged());
+        }
+        record.resize(usize::try_from(length).unwrap_or(0), 0);
+        rest.read_exact(&mut record)?;
+        if !is_whole(header[0], &record) {
+            return Err(damaged());
+        }
+    }
+    Ok(())
+}
+
+/// The library trusts the footer with memory for all that follows the start of the summary. Gives where that is and its bytes.
+fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(u64, u64), Error> {
     let begin = size - MAGIC_BYTES - FOOTER_BYTES;
     file.seek(SeekFrom::Start(begin))?;
     let mut footer = [0; FOOTER_BYTES as usize];
@@ -63,7 +90,10 @@ fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
             bytes,
             most: SUMMARY_BYTES_MAX,
         }),
-        Some(bytes) => check_summary(file, start, bytes, &footer),
+        Some(bytes) => {
+            check_summary(file, start, bytes, &footer)?;
+            Ok((start, bytes))
+        }
     }
 }
 

@@ -402,6 +402,25 @@ fn channels_of_a_damaged_part_are_those_of_the_summary() {
 }
 
 #[test]
+fn a_length_in_the_summary_takes_no_memory() {
+    let whole = recording(10);
+    let end = whole.len() - 8;
+    // Lengths of the topic, of its encoding and of what is said of it.
+    let topic = b"/a/fast";
+    let at = whole.windows(7).rposition(|bytes| bytes == topic).unwrap();
+    for place in [at - 4, at + 7, at + 7 + 4 + 3] {
+        let mut bytes = whole.clone();
+        bytes[place..place + 4].fill(0xff);
+        // No checksum of the summary.
+        bytes[end - 4..end].fill(0);
+        let refused = open(&bytes).err();
+        assert!(matches!(refused, Some(Error::Damaged(_))), "{refused:?}");
+        let saved = crate::mend::mend_file(Cursor::new(&bytes), Cursor::new(Vec::new()));
+        assert_eq!(saved.unwrap().messages, 12);
+    }
+}
+
+#[test]
 fn an_index_that_leads_elsewhere_takes_no_memory() {
     let bytes = recording(10);
     let mut reader = open(&bytes).unwrap();
