@@ -341,16 +341,17 @@ impl<W: Write + Seek> Target<W> {
         let Some(out) = out else {
             return Err(Stop::Damage(Error::NotARecording));
         };
-        let unknown = |what: &str| Stop::Damage(Error::Damaged(format!("an unknown {what}")));
         match record {
             Record::Schema { header, data } => {
                 let id = out.add_schema(&header.name, &header.encoding, &data);
                 self.schemas.insert(header.id, id.map_err(disk)?);
             }
             Record::Channel(channel) => {
-                let schema = match channel.schema_id {
-                    0 => 0,
-                    id => *(self.schemas.get(&id)).ok_or_else(|| unknown("schema"))?,
+                let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
+                    (0, _) => 0,
+                    (_, Some(schema)) => *schema,
+                    // It stood in a damaged part; maybe the summary knows the channel, when a message comes.
+                    (_, None) => return Ok(true),
                 };
                 let id = declare(out, schema, &channel).map_err(disk)?;
                 self.channels.insert(channel.id, (id, channel.topic));

@@ -8,11 +8,12 @@ use crate::rig::{Home, Robot, TRIK};
 use harness::{Board, Output, eventually, tools};
 use journal::node::Node;
 use journal::write::Writer;
-use nix::sys::signal::Signal;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 const MS: u64 = 1_000_000;
@@ -321,23 +322,17 @@ fn a_tree_without_bytes_of_devices_says_how_there_are_some() {
     let Some(home) = Home::new() else { return };
     let home = Arc::new(home);
     let mut robot = Reachable::beside(&home, &[]);
-    let words = [
-        "record",
-        "--raw",
-        "-o",
-        "far.mcap",
-        "--seconds",
-        "1",
-        "--robot",
-        robot.ip(),
-    ];
-    let refused = home.run(&words);
+    let words = ["record", "--raw", "-o", "far.mcap", "--robot", robot.ip()];
+    let mut command = home.command(&words);
+    let recorder = command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let recorder = recorder.spawn().expect("trik record");
+    eventually("a recording", || home.0.path("far.mcap").exists());
+    let pid = Pid::from_raw(i32::try_from(recorder.id()).expect("a pid"));
+    kill(pid, Signal::SIGINT).expect("SIGINT");
+    let refused = recorder.wait_with_output().expect("an end");
     assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        refused.stderr.contains("trik up --raw"),
-        "{}",
-        refused.stderr
-    );
+    let why = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(why.contains("trik up --raw"), "{why}");
     // What there is stays.
     home.run(&["info", "far.mcap"]).good();
     let refused = home.run(&["record", "--raw", "-o", "run.mcap"]);
