@@ -1,8 +1,8 @@
 //! What writing, reading and finding cost in recordings, beside the crate `mcap` itself and, with the Python that
 //! `TRIK_MCAP_PYTHON` names, rosbags.
 //!
-//! `cargo bench -p journal --bench file`; `JOURNAL_MIB` is the size of the large file (1024). Times are those of the processor, the
-//! best of several rounds in turns, but for the large file, where a person waits: there they are those of the clock.
+//! `cargo bench -p journal --bench file`; `JOURNAL_MIB` is the size of the large file (1024). Times are those of the
+//! processor, the best of several rounds in turns, but for the large file, where a person waits: there they are those of the clock.
 
 use journal::node::Node;
 use journal::read::Reader;

@@ -1,7 +1,7 @@
 //! What a recorder costs beside a robot: processor, memory, bytes, and how long reads of others take with it and without.
 //!
-//! `RECORDER_TREE=DIR cargo bench -p recorder --bench beside` with the tree of a robot mounted there, such as that of `trik up`. Windows with
-//! and without a recorder take turns, so that other work of the machine meets both.
+//! `RECORDER_TREE=DIR cargo bench -p recorder --bench beside` with the tree of a robot mounted there, such as that of
+//! `trik up`. Windows with and without a recorder take turns, so that other work of the machine meets both.
 
 use recorder::entry::{Batch, events};
 use recorder::file::Disk;

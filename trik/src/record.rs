@@ -28,8 +28,8 @@ const LIBRARY: &str = concat!("trik/", env!("CARGO_PKG_VERSION"));
 const USUAL: &str = "/trikfs";
 
 /// Why there is nothing of `--raw`.
-pub(crate) const NO_RAW: &str = "no node gives what it has before it is converted: give nodes raw = true in the configuration, or start the \
-     tree with trik up --raw or trikfs mount --raw";
+pub(crate) const NO_RAW: &str = "no node gives what it has before it is converted: give nodes raw = true in the \
+     configuration, or start the tree with trik up --raw or trikfs mount --raw";
 
 /// Records until somebody stops it.
 ///
