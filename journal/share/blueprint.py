@@ -2,7 +2,8 @@
 """A blueprint for Rerun of a recording: what of it is drawn, and how it is called.
 
     python3 blueprint.py run.mcap              writes run.rbl beside it
-    rerun run.mcap run.rbl                     shows the recording with it
+    rerun mcap convert run.mcap -o run.rrd --application-id run
+    rerun run.rrd run.rbl                      shows the recording with it
     python3 blueprint.py --list run.mcap       says what would be drawn, without Rerun
     python3 blueprint.py --only motors --only 'sensors/D*' run.mcap
 
@@ -24,6 +25,7 @@ NUMBERS_MAX = 8
 NUMBERS = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64"}
 PICTURE = "sensor_msgs/msg/CompressedImage"
 LINES = "rcl_interfaces/msg/Log"
+ORDER = {"picture": 0, "curves": 1, "text": 2}
 
 
 def numbers_of(schema):
@@ -35,7 +37,8 @@ def numbers_of(schema):
 
 
 def is_wanted(topic, patterns):
-    path = topic.lstrip("/")
+    # A node with the name of something else, such as raw, has its topic below this.
+    path = topic.lstrip("/").removeprefix("node/")
     groups = ["/".join(path.split("/")[: at + 1]) for at in range(path.count("/") + 1)]
     return not patterns or any(fnmatch.fnmatchcase(name, one) for one in patterns for name in groups)
 
@@ -47,7 +50,11 @@ def plan(file, patterns):
     if summary is None:
         sys.exit(f"{file}: it has no end: trik mend {file} makes it whole")
     views = {}
+    counts = summary.statistics.channel_message_counts if summary.statistics else None
     for channel in summary.channels.values():
+        # A node that has said nothing would be an empty view.
+        if counts is not None and not counts.get(channel.id):
+            continue
         schema = summary.schemas.get(channel.schema_id)
         topic = channel.topic
         if schema is None or not is_wanted(topic, patterns):
@@ -63,8 +70,14 @@ def plan(file, patterns):
             if numbers:
                 views[topic] = ("curves", topic, title, schema.name, numbers)
     # What moves first, then words.
-    order = {"picture": 0, "curves": 1, "text": 2}
-    return sorted(views.values(), key=lambda view: (order[view[0]], view[1]))
+    return sorted(views.values(), key=lambda view: (ORDER[view[0]], view[1]))
+
+
+def within_limit(views):
+    """As many as fit, curves last, because there are most of them; and those that do not."""
+    urgent = sorted(views, key=lambda view: view[0] == "curves")
+    kept = {view[1] for view in urgent[:VIEWS_MAX]}
+    return [view for view in views if view[1] in kept], [view for view in views if view[1] not in kept]
 
 
 def write(views, name, into):
@@ -104,10 +117,10 @@ def main():
     views = plan(args.file, args.only)
     if not views:
         sys.exit(f"{args.file}: there is nothing to draw")
-    if len(views) > VIEWS_MAX:
-        left = ", ".join(view[1] for view in views[VIEWS_MAX:])
-        print(f"left out, name them with --only: {left}", file=sys.stderr)
-    views = views[:VIEWS_MAX]
+    views, left = within_limit(views)
+    if left:
+        names = ", ".join(view[1] for view in left)
+        print(f"left out, name them with --only: {names}", file=sys.stderr)
     if args.list:
         for kind, topic, title, _, numbers in views:
             print(f"{kind} {topic} [{title}]", *numbers)

@@ -6,6 +6,7 @@
 
 use crate::error::Error;
 use crate::limits::RECORD_BYTES_MAX;
+use crate::shape::is_whole;
 use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::Read as _;
@@ -24,6 +25,9 @@ impl<'a> Chunk<'a> {
     /// It is damaged.
     pub fn of(data: &'a [u8]) -> Result<Self, Error> {
         let damaged = || Error::Damaged("a chunk".to_owned());
+        if !is_whole(op::CHUNK, data) {
+            return Err(damaged());
+        }
         let read = mcap::parse_record(op::CHUNK, data).map_err(Error::reading)?;
         let Record::Chunk {
             header,

@@ -21,6 +21,8 @@ pub enum Blame {
 pub enum Error {
     /// The system says no.
     Io(String),
+    /// It says so of the file that is made of another one.
+    Output(String),
     /// The file is no MCAP.
     NotARecording,
     /// The file ends before its end: its recorder was killed, or the disk was full.
@@ -57,7 +59,7 @@ impl Error {
     /// The person or the part that can mend it.
     pub fn blame(&self) -> Blame {
         match self {
-            Self::Io(_) => Blame::Machine,
+            Self::Io(_) | Self::Output(_) => Blame::Machine,
             Self::NotARecording | Self::Cut | Self::Damaged(_) | Self::TooLarge { .. } => {
                 Blame::File
             }
@@ -65,6 +67,22 @@ impl Error {
                 Blame::Caller
             }
         }
+    }
+
+    /// The same of the file that is made, where there is another one that is read.
+    pub(crate) fn of_output(self) -> Self {
+        if let Self::Io(why) = self {
+            return Self::Output(why);
+        }
+        self
+    }
+
+    /// The same with the place of the part of the file that is damaged.
+    pub(crate) fn in_part(self, at: u64) -> Self {
+        if let Self::Damaged(why) = self {
+            return Self::Damaged(format!("{why}, in the part at byte {at}"));
+        }
+        self
     }
 
     /// What the library for the container says while a file is read.
@@ -105,12 +123,15 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Io(why) | Self::Format(why) => f.write_str(why),
+            Self::Io(why) | Self::Output(why) | Self::Format(why) => f.write_str(why),
             Self::NotARecording => f.write_str("no recording: it does not begin as MCAP files do"),
             Self::Cut => f.write_str(
                 "the recording is cut: its recorder did not finish it; `trik mend` makes it whole",
             ),
-            Self::Damaged(why) => write!(f, "the recording is damaged: {why}"),
+            Self::Damaged(why) => write!(
+                f,
+                "the recording is damaged: {why}; `trik mend` with `-o NEW.mcap` keeps what is whole"
+            ),
             Self::TooLarge { what, bytes, most } => {
                 write!(f, "{what} has {bytes} bytes, at most {most} are read")
             }

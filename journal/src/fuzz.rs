@@ -21,7 +21,16 @@ pub fn recording(bytes: &[u8]) {
             let _ = reader.attachment(&name);
         }
         let _ = reader.facts(crate::write::ABOUT);
+        reader.seek_raw(middle);
+        for _ in 0..1000 {
+            match reader.next_raw() {
+                Ok(Some(_)) => {}
+                Ok(None) | Err(_) => break,
+            }
+        }
     }
+    let _ = mend::check(bytes);
+    let _ = mend::mend_file(Cursor::new(bytes), Cursor::new(Vec::new()));
     let mut whole = Vec::new();
     if mend::mend(bytes, Cursor::new(&mut whole)).is_ok() {
         let opened = Reader::open(Cursor::new(whole));

@@ -8,6 +8,7 @@
 //! - `cdr`: values as bytes, and back
 //! - `chunk`: a chunk of a file, record by record
 //! - `schema`: names and texts of types
+//! - `shape`: lengths inside records of a file
 //! - `standard`: the types of other people that are used here
 //! - `node`: one recorded node, its channel, its messages
 //! - `write`, `read`, `mend`: files; `records`: what is in one that is still made
@@ -28,5 +29,6 @@ pub mod node;
 pub mod read;
 pub mod records;
 pub mod schema;
+mod shape;
 pub mod standard;
 pub mod write;

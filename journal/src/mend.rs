@@ -1,20 +1,21 @@
 //! Making a cut recording whole again.
 //!
 //! Owns what is kept: every whole record before the cut, in its order, with the summary that a recorder would have written. A
-//! recorder writes chunks whole, so what it lost is what it had not written yet. Knows no path; the caller renames
-//! the new one over it.
+//! recorder writes chunks whole, so what it lost is what it had not written yet. A damaged chunk is left out, and what follows
+//! it is kept as long as records follow each other. Knows no path; the caller renames the new one over it.
 
-use crate::chunk::Chunk;
+use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
+use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
 use mcap::records::{MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use mcap::{Attachment, Compression, WriteOptions};
+use mcap::{Attachment, Compression, Summary, WriteOptions};
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::io::{Read, Seek, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// How much of a recording that is followed may be in memory alone.
 const FLUSH_NS: u64 = 1_000_000_000;
@@ -26,8 +27,27 @@ pub struct Saved {
     pub messages: u64,
     /// Files that go with it.
     pub attachments: u64,
-    /// Why it went no further; None if the file was whole.
+    /// What was wrong first; None if the file was whole.
     pub cut: Option<Error>,
+    /// Records that are left out because they are damaged, or messages of channels that are not known therefore.
+    pub left_out: u64,
+    /// The place of the first of them, or of the cut, in bytes from the beginning.
+    pub at: u64,
+}
+
+impl Saved {
+    /// Something is wrong at this place.
+    fn note(&mut self, error: Error, at: u64) {
+        if self.cut.is_none() {
+            self.cut = Some(error);
+            self.at = at;
+        }
+    }
+
+    /// Whether only what its recorder had not written yet is missing.
+    pub fn is_only_cut(&self) -> bool {
+        self.left_out == 0 && matches!(self.cut, None | Some(Error::Cut))
+    }
 }
 
 /// Copies what is whole of a recording into a new one.
@@ -36,6 +56,49 @@ pub struct Saved {
 /// It is no recording, or the new one cannot be written.
 pub fn mend<R: Read, W: Write + Seek>(from: R, to: W) -> Result<Saved, Error> {
     copy(from, to, |_, _| true)
+}
+
+/// The same with a file, whose summary, if it is there, says what channels are that stand in a damaged part.
+///
+/// # Errors
+/// As of [`mend`].
+pub fn mend_file<F: Read + Seek, W: Write + Seek>(mut from: F, to: W) -> Result<Saved, Error> {
+    let mut target = Target::new(to);
+    target.known = crate::read::summary_of(&mut from).ok();
+    from.rewind()?;
+    let mut saved = Saved::default();
+    target.pour(from, &mut saved, &|_, _, _| true)?;
+    target.finish()?;
+    Ok(saved)
+}
+
+/// Reads all of a recording and keeps nothing: what is wrong with it.
+///
+/// # Errors
+/// It is no recording, or cannot be read.
+pub fn check<R: Read>(from: R) -> Result<Saved, Error> {
+    copy(from, Nowhere(0), |_, _| false)
+}
+
+/// A file of which only the length is known.
+struct Nowhere(u64);
+
+impl Write for Nowhere {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Nowhere {
+    /// It only goes forward.
+    fn seek(&mut self, _to: SeekFrom) -> io::Result<u64> {
+        Ok(self.0)
+    }
 }
 
 /// The same with some of its messages: those that are wanted, by their topic and their moment in ns since 1970.
@@ -139,6 +202,8 @@ struct Target<W: Write + Seek> {
     /// Numbers there to numbers here.
     schemas: HashMap<u16, u16>,
     channels: HashMap<u16, (u16, String)>,
+    /// What the summary of the old one says.
+    known: Option<Summary>,
 }
 
 impl<W: Write + Seek> Target<W> {
@@ -152,6 +217,7 @@ impl<W: Write + Seek> Target<W> {
             attached: HashMap::new(),
             schemas: HashMap::new(),
             channels: HashMap::new(),
+            known: None,
         }
     }
 
@@ -170,6 +236,7 @@ impl<W: Write + Seek> Target<W> {
         self.is_begun = false;
         self.schemas.clear();
         self.channels.clear();
+        let mut at = mcap::MAGIC.len() as u64;
         while let Some(step) = reader.next_event() {
             match step {
                 Ok(LinearReadEvent::ReadRequest(wanted)) => {
@@ -177,14 +244,18 @@ impl<W: Write + Seek> Target<W> {
                     reader.notify_read(read);
                 }
                 Ok(LinearReadEvent::Record { opcode, data }) => {
+                    let begin = at;
+                    at += (HEADER_BYTES + data.len()) as u64;
                     match self.take_whole(opcode, data, saved, is_wanted) {
                         Ok(true) => {}
                         Ok(false) => break,
-                        Err(Stop::Damage(error)) => {
-                            saved.cut = Some(error);
-                            break;
+                        // A damaged chunk gives nothing, and the next record may be whole.
+                        Err(Stop::Damage(error)) if self.is_begun => {
+                            saved.note(error, begin);
+                            saved.left_out += 1;
                         }
-                        Err(Stop::Disk(error)) => return Err(error),
+                        Err(Stop::Damage(_)) => break,
+                        Err(Stop::Disk(error)) => return Err(error.of_output()),
                     }
                 }
                 Err(error) => {
@@ -192,7 +263,7 @@ impl<W: Write + Seek> Target<W> {
                     if error == Error::NotARecording {
                         return Err(error);
                     }
-                    saved.cut = Some(error);
+                    saved.note(error, at);
                     break;
                 }
             }
@@ -206,7 +277,8 @@ impl<W: Write + Seek> Target<W> {
     /// Writes the summary and the end.
     fn finish(self) -> Result<(), Error> {
         let mut out = self.out.ok_or(Error::NotARecording)?;
-        out.finish().map(drop).map_err(Error::writing)
+        let end = out.finish().map(drop);
+        end.map_err(|error| Error::writing(error).of_output())
     }
 
     /// Begins the new file as the old one was begun; a further one goes on in the same file.
@@ -257,9 +329,9 @@ impl<W: Write + Seek> Target<W> {
     ) -> Result<bool, Stop> {
         let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
-        // The library takes four bytes off an attachment that it has not looked for.
-        if opcode == op::ATTACHMENT && !holds_an_attachment(data) {
-            return Err(Stop::Damage(Error::Damaged("an attachment".to_owned())));
+        if !is_whole(opcode, data) {
+            let what = "a length inside a record".to_owned();
+            return Err(Stop::Damage(Error::Damaged(what)));
         }
         let record = mcap::parse_record(opcode, data).map_err(damage)?;
         if let Record::Header(header) = &record {
@@ -269,23 +341,36 @@ impl<W: Write + Seek> Target<W> {
         let Some(out) = out else {
             return Err(Stop::Damage(Error::NotARecording));
         };
-        let unknown = |what: &str| Stop::Damage(Error::Damaged(format!("an unknown {what}")));
         match record {
             Record::Schema { header, data } => {
                 let id = out.add_schema(&header.name, &header.encoding, &data);
                 self.schemas.insert(header.id, id.map_err(disk)?);
             }
             Record::Channel(channel) => {
-                let schema = match channel.schema_id {
-                    0 => 0,
-                    id => *(self.schemas.get(&id)).ok_or_else(|| unknown("schema"))?,
+                let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
+                    (0, _) => 0,
+                    (_, Some(schema)) => *schema,
+                    // It stood in a damaged part; maybe the summary knows the channel, when a message comes.
+                    (_, None) => return Ok(true),
                 };
                 let id = declare(out, schema, &channel).map_err(disk)?;
                 self.channels.insert(channel.id, (id, channel.topic));
             }
             Record::Message { header, data } => {
-                let channel = self.channels.get(&header.channel_id);
-                let (id, topic) = channel.ok_or_else(|| unknown("channel"))?;
+                if !self.channels.contains_key(&header.channel_id) {
+                    let known = self.known.as_ref();
+                    let known = known.and_then(|known| known.channels.get(&header.channel_id));
+                    let Some(channel) = known else {
+                        // Others of its chunk may be known.
+                        saved.note(Error::Damaged("an unknown channel".to_owned()), 0);
+                        saved.left_out += 1;
+                        return Ok(true);
+                    };
+                    let id = declare_known(out, channel).map_err(disk)?;
+                    self.channels
+                        .insert(channel.id, (id, channel.topic.clone()));
+                }
+                let (id, topic) = &self.channels[&header.channel_id];
                 if is_wanted(topic, &header, &data) {
                     let channel_id = *id;
                     let header = MessageHeader {
@@ -338,6 +423,19 @@ fn declare<W: Write + Seek>(
     out.add_channel(schema, &channel.topic, encoding, &channel.metadata)
 }
 
+/// The same for one that the old summary tells of.
+fn declare_known<W: Write + Seek>(
+    out: &mut mcap::Writer<W>,
+    channel: &mcap::Channel<'_>,
+) -> mcap::McapResult<u16> {
+    let schema = match &channel.schema {
+        Some(schema) => out.add_schema(&schema.name, &schema.encoding, &schema.data)?,
+        None => 0,
+    };
+    let encoding = &channel.message_encoding;
+    out.add_channel(schema, &channel.topic, encoding, &channel.metadata)
+}
+
 /// Writes a message, and hands all to the file if it is time.
 fn write<W: Write + Seek>(
     out: &mut mcap::Writer<W>,
@@ -359,18 +457,4 @@ fn write<W: Write + Seek>(
 fn is_new(attached: &mut HashMap<String, u32>, attachment: &Attachment<'_>) -> bool {
     let checksum = crc32fast::hash(&attachment.data);
     attached.insert(attachment.name.clone(), checksum) != Some(checksum)
-}
-
-/// Whether all parts of an attachment are there: two times, name, media type, length, bytes, checksum.
-fn holds_an_attachment(data: &[u8]) -> bool {
-    let length_at = |at: usize| -> Option<usize> {
-        let bytes = data.get(at..at.checked_add(4)?)?;
-        usize::try_from(u32::from_le_bytes(bytes.try_into().ok()?)).ok()
-    };
-    let mut at = Some(16);
-    for _ in ["name", "media type"] {
-        at = at.and_then(|at: usize| at.checked_add(4)?.checked_add(length_at(at)?));
-    }
-    at.and_then(|at| at.checked_add(8 + 4))
-        .is_some_and(|end| end <= data.len())
 }

@@ -8,12 +8,13 @@ use crate::error::Error;
 use crate::layout::{Field, Layout, text};
 use crate::limits::TUPLE_BYTES_MAX;
 use crate::standard::stamp;
+use crate::write::{FAULTS, Story};
 use std::collections::BTreeMap;
 
 /// What is known of a node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// Its path below the mount point, which is the topic without the `/` before it.
+    /// Its path below the mount point, which is the topic without the `/` before it, but where that is another thing's.
     pub path: String,
     /// The text of its `format`.
     pub format: String,
@@ -40,12 +41,31 @@ const REST: &str = "rest";
 const ALIASES: &str = "aliases";
 const RAW_OF: &str = "raw_of";
 const BYTES: &str = "bytes";
+/// The path of a node whose topic is another one.
+const PATH: &str = "path";
 /// What the topics of bytes of sources begin with.
-const RAW: &str = "raw/";
+const RAW: &str = "raw";
+/// What the topics of nodes begin with whose own are those of other things.
+const APART: &str = "node";
+/// Groups that are no nodes: bytes of sources, messages of standard types, nodes that stand apart.
+const TAKEN_GROUPS: [&str; 3] = [RAW, "ros", APART];
+/// Topics that are no nodes, beside those of stories.
+const TAKEN: [&str; 2] = [FAULTS, "/tf"];
 
-/// The node whose source is called so where failures are told; None: it is none of a source.
-pub(crate) fn raw_path(name: &str) -> Option<&str> {
-    name.strip_prefix(RAW)
+/// Whether the topic that a node of this path would have may be that of something else. Without an exception for those
+/// below `APART`, two nodes could meet there.
+fn is_taken(path: &str) -> bool {
+    let group = path.split_once('/').map_or(path, |(group, _)| group);
+    let topic = format!("/{path}");
+    TAKEN_GROUPS.contains(&group) || TAKEN.contains(&&*topic) || Story::of(&topic).is_some()
+}
+
+/// The path of the node with this topic, which is without the `/` before it, if it is one of a node.
+pub fn path_of(topic: &str) -> &str {
+    let apart = topic
+        .strip_prefix(APART)
+        .and_then(|rest| rest.strip_prefix('/'));
+    apart.unwrap_or(topic)
 }
 
 impl Node {
@@ -78,8 +98,11 @@ impl Node {
 
     /// The topic without the `/` before it.
     pub(crate) fn name(&self) -> String {
-        let before = if self.is_raw { RAW } else { "" };
-        format!("{before}{}", self.path)
+        match (self.is_raw, is_taken(&self.path)) {
+            (true, _) => format!("{RAW}/{}", self.path),
+            (false, true) => format!("{APART}/{}", self.path),
+            (false, false) => self.path.clone(),
+        }
     }
 
     /// What the channel says of it.
@@ -91,7 +114,9 @@ impl Node {
             return all.map(|(key, value)| (key.to_owned(), value)).into();
         }
         let access = if self.is_written { "rw" } else { "r" };
+        let path = is_taken(&self.path).then(|| self.path.clone());
         let all = [
+            (PATH, path.unwrap_or_default()),
             (FORMAT, self.format.clone()),
             (UNITS, self.units.clone()),
             (ABOUT, self.about.clone()),
@@ -112,7 +137,10 @@ impl Node {
             return is_one.then(|| Self::raw(path, bytes));
         }
         Some(Self {
-            path: topic.strip_prefix('/')?.to_owned(),
+            path: match metadata.get(PATH) {
+                Some(path) => path.clone(),
+                None => topic.strip_prefix('/')?.to_owned(),
+            },
             format: metadata.get(FORMAT)?.clone(),
             units: of(UNITS),
             about: of(ABOUT),
@@ -250,6 +278,33 @@ mod tests {
             metadata.insert(BYTES.to_owned(), bytes.to_owned());
             assert_eq!(Node::of_channel(&raw.topic(), &metadata), None, "{bytes}");
         }
+    }
+
+    #[test]
+    fn no_node_has_the_topic_of_another_thing() {
+        for (path, topic) in [
+            ("raw/A1", "/node/raw/A1"),
+            ("raw", "/node/raw"),
+            ("node/raw/A1", "/node/node/raw/A1"),
+            ("ros/joint_states", "/node/ros/joint_states"),
+            ("tf", "/node/tf"),
+            ("world", "/node/world"),
+            ("faults", "/node/faults"),
+            ("rawness", "/rawness"),
+            ("output/A1", "/output/A1"),
+            ("sensors/raw", "/sensors/raw"),
+        ] {
+            let node = Node::sensor(path, "u8 x");
+            assert_eq!(node.topic(), topic);
+            assert_eq!(path_of(&node.name()), path);
+            assert_eq!(Node::of_channel(topic, &node.metadata()), Some(node));
+        }
+        assert_eq!(Node::raw("node/A1", 1).topic(), "/raw/node/A1");
+        // As older programs wrote it.
+        let mut metadata = Node::sensor("raw/A1", "u8 x").metadata();
+        metadata.remove(PATH);
+        let node = Node::of_channel("/raw/A1", &metadata);
+        assert_eq!(node.map(|node| node.path).as_deref(), Some("raw/A1"));
     }
 
     #[test]

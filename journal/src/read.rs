@@ -9,11 +9,11 @@ use crate::error::Error;
 use crate::layout::Layout;
 use crate::limits::{ATTACHMENT_BYTES_MAX, CHUNKS_BACK, NODES_MAX, RECORD_BYTES_MAX};
 use crate::node::{self, Node};
+use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
-use container::{
-    FOOTER_BYTES, MAGIC_BYTES, attachment_of, check_chunk, check_footer, new_indexed, step, summary,
-};
+pub(crate) use container::summary_of;
+use container::{attachment_of, check_chunk, new_indexed, step};
 use mcap::Summary;
 use mcap::records::op;
 use mcap::sans_io::{IndexedReader, IndexedReaderOptions, indexed_reader::ReadOrder};
@@ -31,6 +31,9 @@ pub struct Reader<F> {
     raws: Vec<String>,
     /// What each channel carries.
     carries: HashMap<u16, Carries>,
+    /// Nodes and sources by the names that failures have, which are those of their topics.
+    named: HashMap<String, usize>,
+    raws_named: HashMap<String, usize>,
     /// Reads forwards; None before the first event is wanted.
     forwards: Option<IndexedReader>,
     from_ns: u64,
@@ -103,23 +106,8 @@ impl<F: Read + Seek> Reader<F> {
     /// # Errors
     /// It is none, it is cut, or it contradicts itself.
     pub fn open(mut file: F) -> Result<Self, Error> {
+        let mut summary = summary_of(&mut file)?;
         let size = file.seek(SeekFrom::End(0))?;
-        file.rewind()?;
-        let mut magic = [0; MAGIC_BYTES as usize];
-        let begins = file.read_exact(&mut magic);
-        if begins.is_err() || magic != *mcap::MAGIC {
-            return Err(Error::NotARecording);
-        }
-        if size < 2 * MAGIC_BYTES + FOOTER_BYTES {
-            return Err(Error::Cut);
-        }
-        file.seek(SeekFrom::End(-(MAGIC_BYTES as i64)))?;
-        file.read_exact(&mut magic)?;
-        if magic != *mcap::MAGIC {
-            return Err(Error::Cut);
-        }
-        check_footer(&mut file, size)?;
-        let mut summary = summary(&mut file, size)?;
         // Chunks are found again by their place.
         summary
             .chunk_indexes
@@ -135,6 +123,8 @@ impl<F: Read + Seek> Reader<F> {
             layouts: Vec::new(),
             raws: Vec::new(),
             carries: HashMap::new(),
+            named: HashMap::new(),
+            raws_named: HashMap::new(),
             forwards: None,
             from_ns: 0,
             only: Vec::new(),
@@ -150,48 +140,69 @@ impl<F: Read + Seek> Reader<F> {
         let mut channels: Vec<_> = self.summary.channels.values().cloned().collect();
         channels.sort_by_key(|channel| channel.id);
         for channel in channels {
-            let carries = match channel.topic.as_str() {
-                FAULTS => Carries::Faults,
-                topic if let Some(story) = Story::of(topic) => Carries::Lines(story),
-                topic => {
-                    let Some(node) = Node::of_channel(topic, &channel.metadata) else {
-                        continue;
-                    };
-                    if node.is_raw {
-                        if self.raws.len() == NODES_MAX {
-                            return Err(Error::TooMany("nodes"));
-                        }
-                        let bytes = Layout::parse(&node.format)?.size();
-                        let raw = self.raw_of(node.path);
-                        self.carries.insert(channel.id, Carries::Raw(raw, bytes));
-                        continue;
-                    }
-                    if self.layouts.len() == NODES_MAX {
-                        return Err(Error::TooMany("nodes"));
-                    }
-                    self.layouts.push(Layout::parse(&node.format)?);
-                    let known = self.nodes.iter().position(|other| other.path == node.path);
-                    let number = known.unwrap_or(self.nodes.len());
-                    match known {
-                        // A later format is the one that it has.
-                        Some(number) => self.nodes[number] = node,
-                        None => self.nodes.push(node),
-                    }
-                    Carries::Samples(number, self.layouts.len() - 1)
-                }
+            let topic = channel.topic.as_str();
+            // What is said of a channel comes first: older recordings have nodes with topics of other things.
+            let carries = match Node::of_channel(topic, &channel.metadata) {
+                Some(node) => self.learn_node(topic.trim_start_matches('/'), node)?,
+                None if topic == FAULTS => Carries::Faults,
+                None => match Story::of(topic) {
+                    Some(story) => Carries::Lines(story),
+                    None => continue,
+                },
             };
             self.carries.insert(channel.id, carries);
         }
         Ok(())
     }
 
-    /// The number of the source of this node.
-    fn raw_of(&mut self, path: String) -> usize {
-        let known = self.raws.iter().position(|other| *other == path);
-        known.unwrap_or_else(|| {
-            self.raws.push(path);
-            self.raws.len() - 1
-        })
+    /// A channel of this name has samples of a node, or what its source gave.
+    fn learn_node(&mut self, name: &str, node: Node) -> Result<Carries, Error> {
+        if self.layouts.len() == NODES_MAX || self.raws.len() == NODES_MAX {
+            return Err(Error::TooMany("nodes"));
+        }
+        let layout = Layout::parse(&node.format)?;
+        if node.is_raw {
+            let known = self.raws.iter().position(|other| *other == node.path);
+            let raw = known.unwrap_or(self.raws.len());
+            if known.is_none() {
+                self.raws.push(node.path);
+            }
+            self.raws_named.insert(name.to_owned(), raw);
+            return Ok(Carries::Raw(raw, layout.size()));
+        }
+        self.layouts.push(layout);
+        let known = self.nodes.iter().position(|other| other.path == node.path);
+        let number = known.unwrap_or(self.nodes.len());
+        match known {
+            // A later format is the one that it has.
+            Some(number) => self.nodes[number] = node,
+            None => self.nodes.push(node),
+        }
+        self.named.insert(name.to_owned(), number);
+        Ok(Carries::Samples(number, self.layouts.len() - 1))
+    }
+
+    /// The topics of the channels that carry this.
+    fn topics(&self, is_it: impl Fn(&Carries) -> bool) -> Vec<String> {
+        let channels = self.carries.iter().filter(|(_, carries)| is_it(carries));
+        let channels = channels.filter_map(|(id, _)| self.summary.channels.get(id));
+        channels.map(|channel| channel.topic.clone()).collect()
+    }
+
+    /// The topic of a node.
+    pub fn topic_of(&self, node: usize) -> Option<String> {
+        let is_it = |carries: &Carries| matches!(carries, Carries::Samples(of, _) if *of == node);
+        self.topics(is_it).pop()
+    }
+
+    /// Whether any source gave anything, as far as the counts of the recording say; a piece of one may have their topics alone.
+    pub fn has_raw(&self) -> bool {
+        let Some(stats) = &self.summary.stats else {
+            return !self.raws.is_empty();
+        };
+        let is_raw = |id: &u16| matches!(self.carries.get(id), Some(Carries::Raw(..)));
+        let mut counts = stats.channel_message_counts.iter();
+        counts.any(|(id, count)| is_raw(id) && *count > 0)
     }
 
     /// The paths of the nodes whose sources are recorded too.
@@ -324,6 +335,9 @@ impl<F: Read + Seek> Reader<F> {
             Some((&op::METADATA, rest)) => rest.get(8..).ok_or_else(damaged)?,
             Some(_) | None => return Err(damaged()),
         };
+        if !is_whole(op::METADATA, body) {
+            return Err(damaged());
+        }
         let parsed = mcap::parse_record(op::METADATA, body).map_err(Error::reading)?;
         let mcap::records::Record::Metadata(metadata) = parsed else {
             return Err(damaged());
@@ -357,7 +371,8 @@ impl<F: Read + Seek> Reader<F> {
     /// As `seek`, but it gives samples of these nodes alone, and does not read chunks without any; of all if there are none.
     pub fn seek_among(&mut self, unix_ns: u64, nodes: &[usize]) {
         self.from_ns = unix_ns;
-        self.only = nodes.iter().map(|node| self.nodes[*node].topic()).collect();
+        self.only = self
+            .topics(|carries| matches!(carries, Carries::Samples(node, _) if nodes.contains(node)));
         self.forwards = None;
     }
 
@@ -376,8 +391,7 @@ impl<F: Read + Seek> Reader<F> {
     /// From now on `next_raw` gives what sources gave at this moment and after it.
     pub fn seek_raw(&mut self, unix_ns: u64) {
         self.seek(unix_ns);
-        let raws = self.raws.iter();
-        self.only = raws.map(|path| Node::raw(path, 1).topic()).collect();
+        self.only = self.topics(|carries| matches!(carries, Carries::Raw(..)));
         self.only.push(FAULTS.to_owned());
     }
 
@@ -398,16 +412,18 @@ impl<F: Read + Seek> Reader<F> {
         let (raw, given) = match self.carries.get(&id) {
             Some(&Carries::Raw(raw, bytes)) => {
                 let tuple = node::decode(&Layout::Bytes(bytes), data);
-                let what =
-                    || Error::Damaged(format!("a message of raw/{} is none", self.raws[raw]));
+                let what = || {
+                    Error::Damaged(format!(
+                        "bytes of the device of {} are none",
+                        self.raws[raw]
+                    ))
+                };
                 (raw, Ok(tuple.ok_or_else(what)?))
             }
             Some(Carries::Faults) => {
                 let fault = Log::decode(data)
                     .ok_or_else(|| Error::Damaged("a message of faults is none".to_owned()))?;
-                let of = node::raw_path(&fault.name);
-                let of = of.and_then(|of| self.raws.iter().position(|path| path == of));
-                let Some(raw) = of else {
+                let Some(&raw) = self.raws_named.get(&fault.name) else {
                     return Ok(None);
                 };
                 let errno = i32::try_from(fault.errno).unwrap_or(i32::MAX);
@@ -510,10 +526,11 @@ impl<F: Read + Seek> Reader<F> {
     }
 
     fn topics_without(&self, newest: &[Option<Event>]) -> Vec<String> {
-        let nodes = self.nodes.iter().zip(newest);
-        let missing = nodes.filter(|(_, newest)| newest.is_none());
-        let topics = missing.map(|(node, _)| node.topic());
-        topics.chain([FAULTS.to_owned()]).collect()
+        let mut topics = self.topics(
+            |carries| matches!(carries, Carries::Samples(node, _) if newest[*node].is_none()),
+        );
+        topics.push(FAULTS.to_owned());
+        topics
     }
 
     /// A message as an event; None if it is of another program.
@@ -533,8 +550,9 @@ impl<F: Read + Seek> Reader<F> {
             }
             Some(Carries::Faults) => {
                 let fault = Log::decode(data).ok_or_else(|| damaged("faults"))?;
-                let found = self.nodes.iter().position(|node| node.path == fault.name);
-                let Some(node) = found else { return Ok(None) };
+                let Some(&node) = self.named.get(&fault.name) else {
+                    return Ok(None);
+                };
                 EventKind::Fault {
                     node,
                     errno: i32::try_from(fault.errno).unwrap_or(i32::MAX),

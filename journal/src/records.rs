@@ -6,6 +6,7 @@
 use crate::chunk::HEADER_BYTES;
 use crate::error::Error;
 use crate::limits::RECORD_BYTES_MAX;
+use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::Story;
 use mcap::records::{Record as Raw, op};
@@ -124,6 +125,9 @@ fn whole(bytes: &[u8]) -> Result<usize, Error> {
 
 #[allow(clippy::wildcard_enum_match_arm, reason = "kinds of another crate")]
 fn record(opcode: u8, body: &[u8]) -> Result<Option<Record>, Error> {
+    if !is_whole(opcode, body) {
+        return Err(Error::Damaged("a length inside a record".to_owned()));
+    }
     Ok(
         match mcap::parse_record(opcode, body).map_err(Error::reading)? {
             Raw::Schema { header, data } => {

@@ -10,7 +10,7 @@ const FIELDS = {
   "/code": ["data"],
   "/faults": ["name", "msg", "level", "line"],
   "/log": ["name", "msg", "level", "line"],
-  "/raw": ["data"],
+  "/node/raw": ["data"],
   "/sensors/A1": ["x", "x2", "y", "class"],
 };
 

@@ -9,7 +9,7 @@ FIELDS = {
     "/code": ["data"],
     "/faults": ["name", "msg", "level", "line"],
     "/log": ["name", "msg", "level", "line"],
-    "/raw": ["data"],
+    "/node/raw": ["data"],
     "/sensors/A1": ["x", "x2", "y", "class"],
 }
 

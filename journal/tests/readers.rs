@@ -140,7 +140,7 @@ const TOLD: &str = "\
 /code 1 data=green
 /faults 1 name=sensors/A1 msg=device: gone level=40 line=5
 /log 1 name=trikfs msg=ready level=20 line=0
-/raw 1 data=1,2,3,255
+/node/raw 1 data=1,2,3,255
 /ros/battery 1
 /ros/imu 1
 /ros/joints 1

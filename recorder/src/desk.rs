@@ -38,6 +38,11 @@ pub trait Listener: Send {
     /// Which nodes are wanted, and how much.
     fn wants(&self) -> Wants;
 
+    /// Whether what devices give is wanted too, before it is converted. Others never hear of it.
+    fn wants_raw(&self) -> bool {
+        false
+    }
+
     /// Takes what has come, which may be nothing, at this moment in ns since 1970. False: it wants no more.
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool;
 }
@@ -270,10 +275,11 @@ impl Work {
         self.ensure();
         let mut beginning: Vec<Entry> = self.program.iter().cloned().collect();
         beginning.extend(self.watch.iter().flat_map(Watch::beginning));
-        if let Some(listener) = self.listeners.last_mut()
-            && !beginning.is_empty()
-        {
-            listener.put(&beginning, now_ns());
+        if let Some(listener) = self.listeners.last_mut() {
+            beginning.retain(|entry| !entry.is_raw() || listener.wants_raw());
+            if !beginning.is_empty() {
+                listener.put(&beginning, now_ns());
+            }
         }
     }
 
@@ -289,10 +295,16 @@ impl Work {
 
     /// What anybody wants has changed.
     fn want(&mut self) {
-        let wants = self.wants();
+        let (wants, raw) = (self.wants(), self.wants_raw());
         if let Some(watch) = &mut self.watch {
             watch.want(wants, &mut self.batch);
+            watch.want_raw(raw, &mut self.batch);
         }
+    }
+
+    /// Whether anybody wants what devices give. The black box does: a tree gives it only if somebody has asked for that.
+    fn wants_raw(&self) -> bool {
+        self.kept.is_some() || self.listeners.iter().any(|listener| listener.wants_raw())
     }
 
     fn leave(&mut self) {
@@ -316,6 +328,7 @@ impl Work {
         let wants = self.wants();
         if let Ok(watch) = Watch::begin_after(self.numbers, &self.root, &self.library, wants) {
             let watch = watch.with_world(self.world.as_deref());
+            let watch = watch.with_raw(self.wants_raw());
             self.batch.extend(watch.beginning());
             self.watch = Some(watch);
         }
@@ -337,8 +350,14 @@ impl Work {
         let now_ns = now_ns();
         let before = self.listeners.len();
         let batch: Batch = std::mem::take(&mut self.batch).into();
-        self.listeners
-            .retain_mut(|listener| listener.put(&batch, now_ns));
+        let is_mixed = batch.iter().any(Entry::is_raw);
+        let plain = is_mixed.then(|| batch.iter().filter(|entry| !entry.is_raw()).cloned());
+        let plain: Option<Vec<Entry>> = plain.map(Iterator::collect);
+        self.listeners.retain_mut(|listener| {
+            let has_all = listener.wants_raw();
+            let plain = plain.as_deref().filter(|_| !has_all);
+            listener.put(plain.unwrap_or(&batch), now_ns)
+        });
         if self.listeners.len() < before {
             self.want();
         }
@@ -366,7 +385,8 @@ impl Values {
     /// Whether one that had a value has none any more.
     fn have_gone(&mut self, batch: &[Entry]) -> bool {
         let mut have_gone = false;
-        for entry in batch {
+        // What a device fails to give is told by its node.
+        for entry in batch.iter().filter(|entry| !entry.is_raw()) {
             match entry {
                 Entry::Sample(known, ..) => drop(self.0.insert(known.number)),
                 // Somebody has put another configuration in force.

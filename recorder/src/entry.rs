@@ -82,6 +82,11 @@ impl Entry {
         }
     }
 
+    /// Whether it is of what a device gave, before it was converted.
+    pub fn is_raw(&self) -> bool {
+        self.node().is_some_and(|known| known.node.is_raw)
+    }
+
     /// The node that it is of.
     pub fn node(&self) -> Option<&Arc<Known>> {
         match self {

@@ -22,13 +22,15 @@ pub struct Request {
     patterns: Vec<String>,
     /// Least time between two samples of a node.
     period_ns: u64,
+    /// What devices give too, before it is converted.
+    raw: bool,
 }
 
 impl Request {
-    /// `PATTERN,PATTERN;hz=10`; both parts may be missing.
+    /// `PATTERN,PATTERN;hz=10` or `PATTERN,PATTERN;raw`; all parts may be missing.
     ///
     /// # Errors
-    /// Too many or too long patterns, or a rate that is none.
+    /// Too many or too long patterns, a rate that is none, or one with bytes of devices: what is made of those would differ.
     pub fn parse(text: &str) -> Result<Self, Error> {
         let wrong = |what: String| Err(Error::Request(what));
         let mut request = Self::default();
@@ -47,13 +49,22 @@ impl Request {
             request.patterns.push(pattern.to_owned());
         }
         for part in parts {
+            if part.trim() == "raw" {
+                request.raw = true;
+                continue;
+            }
             let Some(rate) = part.trim().strip_prefix("hz=") else {
-                return wrong(format!("{part:?} is no option: there is hz=NUMBER"));
+                return wrong(format!(
+                    "{part:?} is no option: there are hz=NUMBER and raw"
+                ));
             };
             request.period_ns = match rate.trim().parse::<f64>() {
                 Ok(rate) if (0.01..=10_000.0).contains(&rate) => period_ns(rate),
                 Ok(_) | Err(_) => return wrong(format!("{rate:?} is no rate: 0.01 to 10000 Hz")),
             };
+        }
+        if request.raw && request.period_ns > 0 {
+            return wrong("raw is for all bytes of devices: leave hz out".to_owned());
         }
         Ok(request)
     }
@@ -213,6 +224,10 @@ impl Listener for Stream {
         Box::new(move |path| request.wants(path).then_some(wish))
     }
 
+    fn wants_raw(&self) -> bool {
+        self.request.raw
+    }
+
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool {
         match self.client.state() {
             Took::Gone => return false,
@@ -298,12 +313,14 @@ mod tests {
         assert!(request.wants("sensors/A1") && request.wants("motors/left"));
         assert!(!request.wants("battery"));
         assert_eq!(request.period_ns, 100_000_000);
+        assert!(!request.raw && Request::parse("a; raw").unwrap().raw);
         assert_eq!(Request::parse("").unwrap(), Request::default());
         for wrong in [
             "a;hz=0".to_owned(),
             "a;hz=nan".to_owned(),
             "a;hz=1e9".to_owned(),
             "a;every=5".to_owned(),
+            "a;raw;hz=5".to_owned(),
             "x".repeat(PATTERN_BYTES_MAX + 1),
             "x,".repeat(PATTERNS_MAX + 1),
         ] {

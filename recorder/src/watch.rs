@@ -153,12 +153,18 @@ impl Watch {
     /// The same with what sources give before it is converted, as far as the tree publishes that.
     #[must_use]
     pub fn with_raw(self, is_wanted: bool) -> Self {
-        let mut watch = Self {
-            raws: is_wanted.then(Raws::default),
-            ..self
-        };
-        watch.find_raws(&mut Vec::new());
+        let mut watch = self;
+        watch.want_raw(is_wanted, &mut Vec::new());
         watch
+    }
+
+    /// What sources give is wanted from now on, or no more; those that are new come at once.
+    pub fn want_raw(&mut self, is_wanted: bool, out: &mut Vec<Entry>) {
+        match is_wanted {
+            true => drop(self.raws.get_or_insert_default()),
+            false => self.raws = None,
+        }
+        self.find_raws(out);
     }
 
     /// Of how many nodes that is looked at.
@@ -254,9 +260,23 @@ impl Watch {
     /// Other nodes are wanted from now on; new ones come at once.
     pub fn want(&mut self, wants: Wants, out: &mut Vec<Entry>) {
         self.wants = wants;
-        let wants = &self.wants;
-        // One that is wanted in another way is opened anew, which it takes for the ring of another daemon.
-        (self.watched).retain(|one| wants(&one.known.node.path) == Some(one.wish));
+        let (wants, root, is_replayed) = (&self.wants, &self.root, self.is_replayed);
+        self.watched.retain_mut(|one| {
+            let Some(wish) = wants(&one.known.node.path) else {
+                return false;
+            };
+            if wish == one.wish {
+                return true;
+            }
+            let opened = ring(root, &one.known.node, wish, is_replayed);
+            let opened = opened.filter(|ring| ring.tuple_bytes() == one.ring.tuple_bytes());
+            let is_same = one.ring.is_current() && opened.is_some();
+            // Else it is found anew, as one of another daemon is.
+            if let Some(opened) = opened.filter(|_| is_same) {
+                one.reopen(opened, wish);
+            }
+            is_same
+        });
         self.find(out);
     }
 

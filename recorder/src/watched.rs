@@ -28,6 +28,9 @@ pub(crate) struct Watched {
     fault: (i32, Arc<str>),
     /// What it had last.
     pub(crate) newest: Option<Entry>,
+    /// When its last event was, by the clock of the machine, and that of the same ring before it was opened anew.
+    last_ns: u64,
+    taken_ns: u64,
 }
 
 impl Watched {
@@ -43,7 +46,16 @@ impl Watched {
             wish,
             fault: (0, Arc::default()),
             newest: None,
+            last_ns: 0,
+            taken_ns: 0,
         }
+    }
+
+    /// Goes on with the same ring, opened in another way: it begins with events that have been taken.
+    pub(crate) fn reopen(&mut self, ring: Reader, wish: Wish) {
+        self.ring = ring;
+        self.wish = wish;
+        self.taken_ns = self.last_ns;
     }
 
     /// One event of its ring.
@@ -74,7 +86,9 @@ impl Watched {
         let mut before = None;
         loop {
             match self.ring.next_event(tuple) {
+                Step::Event(event) if event.time_ns <= self.taken_ns => {}
                 Step::Event(event) => {
+                    self.last_ns = self.last_ns.max(event.time_ns);
                     let time_ns = event.time_ns.max(from.begin_ns);
                     let unix_ns = time_ns.saturating_add_signed(from.offset_ns);
                     let entry = self.entry(from.root, event, unix_ns, tuple);

@@ -27,6 +27,10 @@ const LIBRARY: &str = concat!("trik/", env!("CARGO_PKG_VERSION"));
 /// Where a tree is when nothing is said and no virtual robot runs.
 const USUAL: &str = "/trikfs";
 
+/// Why there is nothing of `--raw`.
+pub(crate) const NO_RAW: &str = "no node gives what it has before it is converted: give nodes raw = true in the \
+     configuration, or start the tree with trik up --raw or trikfs mount --raw";
+
 /// Records until somebody stops it.
 ///
 /// # Errors
@@ -36,8 +40,8 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     output.refuse_no_file()?;
     output.refuse_present()?;
     let named = match &args.robot {
-        Some(Recorded::Network(_)) if args.raw => {
-            let why = "--raw is for a mounted tree: run trik record on the robot's own computer";
+        Some(Recorded::Network(_)) if args.raw && args.hz.is_some() => {
+            let why = "--raw records all that devices give: leave --hz out";
             return Err(Refusal::new(why));
         }
         Some(Recorded::Network(robot)) => return recorded::record(args, robot),
@@ -108,9 +112,7 @@ fn watched(args: &RecordArgs, root: &Path) -> Result<Watch, Error> {
     let watch = Watch::begin(root, LIBRARY, wants).map_err(refused)?;
     let watch = watch.with_world(world(root).as_deref()).with_raw(args.raw);
     if args.raw && watch.raws() == 0 {
-        let why = "no node gives what it has before it is converted: give nodes raw = true in the configuration, or start the \
-                   tree with trik up --raw or trikfs mount --raw";
-        return Err(Error::file(root, why));
+        return Err(Error::file(root, NO_RAW));
     }
     Ok(watch)
 }

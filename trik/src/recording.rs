@@ -16,10 +16,12 @@ use crate::refusal::Refusal;
 use crate::terminal::harmless;
 use clap::Args;
 use fresh::Fresh;
-use journal::mend::mend;
+use journal::mend::{Saved, check, mend_file as mend_whole};
+use journal::node::Node;
 use journal::read::Reader;
 use journal::write::ABOUT;
 use lang_text::problem::Locale;
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -128,11 +130,11 @@ fn summary(path: &Path) -> Result<String, Error> {
             format_args!("file      {} ({bytes} bytes)\n", harmless(&name)),
         );
     }
-    let nodes = reader.nodes();
+    let by_topic: HashMap<String, &Node> = (reader.nodes().iter().enumerate())
+        .filter_map(|(number, node)| Some((reader.topic_of(number)?, node)))
+        .collect();
     for (topic, count) in &counts {
-        let node = nodes
-            .iter()
-            .find(|node| format!("/{}", node.path) == *topic);
+        let node = by_topic.get(topic);
         let what = node.map_or_else(String::new, |node| {
             let format: String = node.format.chars().take(40).collect();
             format!("{format}   {}", node.units)
@@ -159,6 +161,27 @@ fn open(path: &Path) -> Result<BufReader<File>, Error> {
     }
 }
 
+/// Why no recording was made of another one: of each file its own reasons.
+fn failed(from: &Path, to: &Path, why: journal::error::Error) -> Error {
+    let is_output = matches!(why, journal::error::Error::Output(_));
+    Error::file(if is_output { to } else { from }, why)
+}
+
+/// What a mended recording has not.
+fn left_out(saved: &Saved) -> String {
+    match (saved.is_only_cut(), saved.left_out) {
+        (true, _) => String::new(),
+        (false, 0) => format!(
+            "; damaged at byte {}, and nothing can be read behind it",
+            saved.at
+        ),
+        (false, count) => format!(
+            "; left out: {count} damaged parts or messages, the first at byte {}",
+            saved.at
+        ),
+    }
+}
+
 /// Makes a cut recording whole.
 ///
 /// # Errors
@@ -170,20 +193,34 @@ pub(crate) fn mend_file(args: &MendArgs) -> Result<u8, Refusal> {
 
 fn mended(args: &MendArgs) -> Result<String, Refusal> {
     let path = &args.file;
-    if args.output.is_none() && Reader::open(open(path)?).is_ok() {
-        return Ok(format!("{}: it is whole\n", path.display()));
+    if args.output.is_none() {
+        let found = check(open(path)?).map_err(|why| Error::file(path, why))?;
+        if found.cut.is_none() && Reader::open(open(path)?).is_ok() {
+            return Ok(format!("{}: it is whole\n", path.display()));
+        }
+        if !found.is_only_cut() {
+            // What cannot be read today may be read by something else tomorrow.
+            let why = format!(
+                "it is damaged at byte {}, not only cut: name a new file by -o, which gets what is whole",
+                found.at
+            );
+            return Err(Error::file(path, why).into());
+        }
     }
     let from = open(path)?;
     let fresh = match &args.output {
         Some(output) => Fresh::new(output, path, args.force)?,
         None => Fresh::over(path)?,
     };
-    let saved = mend(from, BufWriter::new(fresh.file()?));
-    let saved = saved.map_err(|why| Error::file(path, why))?;
+    let saved = mend_whole(from, BufWriter::new(fresh.file()?));
+    let shown = args.output.as_ref().unwrap_or(path);
+    let saved = saved.map_err(|why| failed(path, shown, why))?;
     fresh.place()?;
-    let shown = args.output.as_ref().unwrap_or(path).display();
+    let shown = shown.display();
     Ok(format!(
-        "{shown}: {} messages and {} files that go with them\n",
-        saved.messages, saved.attachments
+        "{shown}: {} messages and {} files that go with them{}\n",
+        saved.messages,
+        saved.attachments,
+        left_out(&saved)
     ))
 }

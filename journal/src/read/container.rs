@@ -6,20 +6,71 @@
 use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{INFLATION_MAX, RECORD_BYTES_MAX, SUMMARY_BYTES_MAX};
+use crate::shape::is_whole;
 use mcap::Summary;
 use mcap::records::op;
 use mcap::sans_io::{
     IndexedReadEvent, IndexedReader, IndexedReaderOptions, SummaryReadEvent, SummaryReader,
     SummaryReaderOptions,
 };
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 
 /// Bytes of a footer with its head, and of the magic after it.
-pub(super) const FOOTER_BYTES: u64 = 9 + 20;
-pub(super) const MAGIC_BYTES: u64 = 8;
+const FOOTER_BYTES: u64 = 9 + 20;
+const MAGIC_BYTES: u64 = 8;
 
-/// The library trusts the footer with memory for all that follows the start of the summary.
-pub(super) fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
+/// The summary of a recording.
+///
+/// # Errors
+/// It is none, it is cut, or its end contradicts itself.
+pub(crate) fn summary_of<F: Read + Seek>(file: &mut F) -> Result<Summary, Error> {
+    let size = file.seek(SeekFrom::End(0))?;
+    file.rewind()?;
+    let mut magic = [0; MAGIC_BYTES as usize];
+    let begins = file.read_exact(&mut magic);
+    if begins.is_err() || magic != *mcap::MAGIC {
+        return Err(Error::NotARecording);
+    }
+    if size < 2 * MAGIC_BYTES + FOOTER_BYTES {
+        return Err(Error::Cut);
+    }
+    file.seek(SeekFrom::End(-(MAGIC_BYTES as i64)))?;
+    file.read_exact(&mut magic)?;
+    if magic != *mcap::MAGIC {
+        return Err(Error::Cut);
+    }
+    let (start, bytes) = check_footer(file, size)?;
+    check_records(file, start, bytes)?;
+    summary(file, size)
+}
+
+/// The library trusts the lengths inside the records of a summary with memory.
+fn check_records<F: Read + Seek>(file: &mut F, start: u64, bytes: u64) -> Result<(), Error> {
+    let damaged = || Error::Damaged("its summary has a record that is none".to_owned());
+    file.seek(SeekFrom::Start(start))?;
+    let mut rest = BufReader::new(file.by_ref().take(bytes));
+    let (mut left, mut record) = (bytes, Vec::new());
+    while left > 0 {
+        let mut header = [0; HEADER_BYTES];
+        rest.read_exact(&mut header).map_err(|_| damaged())?;
+        let length = u64_at(&header, 1).unwrap_or(u64::MAX);
+        left = (left.checked_sub(HEADER_BYTES as u64))
+            .and_then(|left| left.checked_sub(length))
+            .ok_or_else(damaged)?;
+        if length > RECORD_BYTES_MAX as u64 {
+            return Err(damaged());
+        }
+        record.resize(usize::try_from(length).unwrap_or(0), 0);
+        rest.read_exact(&mut record)?;
+        if !is_whole(header[0], &record) {
+            return Err(damaged());
+        }
+    }
+    Ok(())
+}
+
+/// The library trusts the footer with memory for all that follows the start of the summary. Gives where that is and its bytes.
+fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(u64, u64), Error> {
     let begin = size - MAGIC_BYTES - FOOTER_BYTES;
     file.seek(SeekFrom::Start(begin))?;
     let mut footer = [0; FOOTER_BYTES as usize];
@@ -39,7 +90,10 @@ pub(super) fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<()
             bytes,
             most: SUMMARY_BYTES_MAX,
         }),
-        Some(bytes) => check_summary(file, start, bytes, &footer),
+        Some(bytes) => {
+            check_summary(file, start, bytes, &footer)?;
+            Ok((start, bytes))
+        }
     }
 }
 
@@ -75,7 +129,7 @@ fn check_summary<F: Read + Seek>(
     }
 }
 
-pub(super) fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
+fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
     let options = SummaryReaderOptions::default()
         .with_file_size(size)
         .with_record_length_limit(RECORD_BYTES_MAX);
@@ -162,7 +216,7 @@ fn read_chunk<'a, F: Read + Seek>(
     file.seek(SeekFrom::Start(index.chunk_start_offset))?;
     chunk.resize(usize::try_from(index.chunk_length).unwrap_or(0), 0);
     file.read_exact(chunk)?;
-    check_sum(chunk)?;
+    check_sum(chunk).map_err(|why| why.in_part(index.chunk_start_offset))?;
     let begin = usize::try_from(offset - index.chunk_start_offset).unwrap_or(usize::MAX);
     let end = begin.checked_add(length).ok_or_else(damaged)?;
     chunk.get(begin..end).ok_or_else(damaged)

@@ -93,6 +93,110 @@ fn what_sources_gave_is_read_apart_from_what_nodes_had() {
 }
 
 #[test]
+fn a_node_with_the_name_of_something_else_is_apart_from_it() {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    let node = out.add(&Node::sensor("raw/A1", "u8 x")).unwrap();
+    let raw = out.add(&Node::raw("A1", 1)).unwrap();
+    let world = out.add(&Node::sensor("world", "u8 x")).unwrap();
+    out.sample(node, ZERO, &[1]).unwrap();
+    out.sample(raw, ZERO, &[2]).unwrap();
+    out.fault(raw, ZERO + MS, 19, "device: gone").unwrap();
+    out.fault(node, ZERO + 2 * MS, 5, "no").unwrap();
+    out.sample(world, ZERO + 3 * MS, &[3]).unwrap();
+    let line = Log {
+        level: Level::Info,
+        name: String::new(),
+        text: "{}".to_owned(),
+        errno: 0,
+    };
+    out.line(Story::World, ZERO + 4 * MS, &line).unwrap();
+    out.finish().unwrap();
+    let mut reader = open(&bytes).unwrap();
+    let paths: Vec<&str> = reader.nodes().iter().map(|node| &*node.path).collect();
+    assert_eq!(paths, ["raw/A1", "world"]);
+    assert_eq!(reader.raws(), ["A1"]);
+    assert_eq!(reader.topic_of(0).as_deref(), Some("/node/raw/A1"));
+    assert!(reader.has_raw());
+    let events = all(&mut reader);
+    let times: Vec<u64> = events.iter().map(|event| event.unix_ns - ZERO).collect();
+    assert_eq!(times, [0, 2 * MS, 3 * MS, 4 * MS]);
+    assert!(matches!(
+        &events[1].what,
+        EventKind::Fault {
+            node: 0,
+            errno: 5,
+            ..
+        }
+    ));
+    assert!(matches!(events[2].what, EventKind::Sample { node: 1, .. }));
+    reader.seek_raw(ZERO);
+    let first = reader.next_raw().unwrap().unwrap();
+    assert_eq!((first.raw, first.given), (0, Ok(vec![2])));
+    let second = reader.next_raw().unwrap().unwrap();
+    assert_eq!(second.given, Err((19, "device: gone".to_owned())));
+    assert_eq!(reader.next_raw(), Ok(None));
+    // Of the node alone, from any moment on, and what it had.
+    reader.seek_among(ZERO, &[0]);
+    assert_eq!(all(&mut reader).len(), 1);
+    let had = reader.newest(ZERO + 9 * MS).unwrap();
+    assert!(had.iter().all(Option::is_some), "{had:?}");
+}
+
+/// A recording as programs made it that gave such a node the topic of its path.
+fn older() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut out = mcap::Writer::new(Cursor::new(&mut bytes)).unwrap();
+    let words = |pairs: &[(&str, &str)]| -> BTreeMap<String, String> {
+        let pairs = pairs.iter();
+        pairs
+            .map(|(key, word)| ((*key).to_owned(), (*word).to_owned()))
+            .collect()
+    };
+    let schema = out.add_schema("trik_msgs/msg/X", "ros2msg", b"").unwrap();
+    let node = words(&[("format", "u8 x"), ("access", "r")]);
+    let raw = words(&[("raw_of", "A1"), ("bytes", "1")]);
+    for (topic, metadata, value) in [
+        ("/raw/A1", &node, 1),
+        ("/raw/A1", &raw, 2),
+        ("/log", &node, 3),
+    ] {
+        let channel_id = out.add_channel(schema, topic, "cdr", metadata).unwrap();
+        let layout = Layout::Bytes(1);
+        let data = node::encode(topic, &layout, ZERO, 1, &[value]).unwrap();
+        let header = mcap::records::MessageHeader {
+            channel_id,
+            sequence: 1,
+            log_time: ZERO,
+            publish_time: ZERO,
+        };
+        out.write_to_known_channel(&header, &data).unwrap();
+    }
+    out.finish().unwrap();
+    drop(out);
+    bytes
+}
+
+#[test]
+fn older_recordings_with_one_topic_for_both_are_read() {
+    let bytes = older();
+    let mut reader = open(&bytes).unwrap();
+    let paths: Vec<&str> = reader.nodes().iter().map(|node| &*node.path).collect();
+    assert_eq!(paths, ["raw/A1", "log"]);
+    let had: Vec<Vec<u8>> = (all(&mut reader).into_iter())
+        .filter_map(|event| match event.what {
+            EventKind::Sample { tuple, .. } => Some(tuple),
+            EventKind::Fault { .. } | EventKind::Line(..) => None,
+        })
+        .collect();
+    assert_eq!(had, [[1], [3]]);
+    reader.seek_raw(ZERO);
+    let first = reader.next_raw().unwrap().unwrap();
+    assert_eq!((first.raw, first.given), (0, Ok(vec![2])));
+    assert_eq!(reader.next_raw(), Ok(None));
+}
+
+#[test]
 fn everything_that_was_written_is_read_in_its_order() {
     let bytes = recording(1000);
     let mut reader = open(&bytes).unwrap();
@@ -232,6 +336,88 @@ fn a_recording_that_is_cut_anywhere_is_mended_up_to_its_last_whole_chunk() {
         all(&mut open(&mended).unwrap()),
         all(&mut open(&bytes).unwrap())
     );
+}
+
+/// Three chunks of 100 samples each, and where they begin.
+fn three_chunks() -> (Vec<u8>, Vec<usize>) {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    let node = out.add(&Node::sensor("a", "u32 x")).unwrap();
+    for at in 0..300_u32 {
+        out.sample(node, ZERO + u64::from(at) * MS, &at.to_le_bytes())
+            .unwrap();
+        if at % 100 == 99 {
+            out.flush().unwrap();
+        }
+    }
+    out.finish().unwrap();
+    let whole = open(&bytes).unwrap();
+    let chunks = whole.summary.chunk_indexes.iter();
+    let begins = chunks.map(|chunk| usize::try_from(chunk.chunk_start_offset).unwrap());
+    let begins = begins.collect();
+    (bytes, begins)
+}
+
+#[test]
+fn a_damaged_part_is_left_out_and_what_follows_it_is_kept() {
+    let (whole, begins) = three_chunks();
+    assert_eq!(begins.len(), 3);
+    let mut bytes = whole.clone();
+    bytes[begins[1] + 200] ^= 1;
+    let mut reader = open(&bytes).unwrap();
+    let why = loop {
+        if let Err(why) = reader.next() {
+            break why.to_string();
+        }
+    };
+    let place = format!("in the part at byte {}", begins[1]);
+    assert!(why.contains(&place), "{why}");
+    let mut mended = Vec::new();
+    let saved = mend(&bytes[..], Cursor::new(&mut mended)).unwrap();
+    assert_eq!((saved.messages, saved.left_out), (200, 1));
+    assert_eq!(saved.at, begins[1] as u64);
+    assert!(!saved.is_only_cut());
+    assert_eq!(all(&mut open(&mended).unwrap()).len(), 200);
+    assert_eq!(crate::mend::check(&bytes[..]).unwrap().left_out, 1);
+    assert_eq!(crate::mend::check(&whole[..]).unwrap().cut, None);
+    // Lengths that lead nowhere are the end of what can be read.
+    bytes[begins[1] + 1..begins[1] + 9].fill(0xff);
+    let saved = mend(&bytes[..], Cursor::new(Vec::new())).unwrap();
+    assert_eq!((saved.messages, saved.is_only_cut()), (100, false));
+}
+
+#[test]
+fn channels_of_a_damaged_part_are_those_of_the_summary() {
+    let (mut bytes, begins) = three_chunks();
+    bytes[begins[0] + 200] ^= 1;
+    let saved = mend(&bytes[..], Cursor::new(Vec::new())).unwrap();
+    assert_eq!((saved.messages, saved.left_out), (0, 201));
+    let mut mended = Vec::new();
+    let from = Cursor::new(&bytes);
+    let saved = crate::mend::mend_file(from, Cursor::new(&mut mended)).unwrap();
+    assert_eq!((saved.messages, saved.left_out), (200, 1));
+    let mut reader = open(&mended).unwrap();
+    assert_eq!(reader.nodes()[0].format, "u32 x");
+    assert_eq!(all(&mut reader).len(), 200);
+}
+
+#[test]
+fn a_length_in_the_summary_takes_no_memory() {
+    let whole = recording(10);
+    let end = whole.len() - 8;
+    // Lengths of the topic, of its encoding and of what is said of it.
+    let topic = b"/a/fast";
+    let at = whole.windows(7).rposition(|bytes| bytes == topic).unwrap();
+    for place in [at - 4, at + 7, at + 7 + 4 + 3] {
+        let mut bytes = whole.clone();
+        bytes[place..place + 4].fill(0xff);
+        // No checksum of the summary.
+        bytes[end - 4..end].fill(0);
+        let refused = open(&bytes).err();
+        assert!(matches!(refused, Some(Error::Damaged(_))), "{refused:?}");
+        let saved = crate::mend::mend_file(Cursor::new(&bytes), Cursor::new(Vec::new()));
+        assert_eq!(saved.unwrap().messages, 12);
+    }
 }
 
 #[test]

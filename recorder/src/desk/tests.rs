@@ -69,7 +69,11 @@ impl Tree {
 
     fn publish(&mut self, value: u8) {
         // Later than anything that looks has begun.
-        self.writers[0].publish(u64::MAX / 4, &[value]);
+        self.publish_at(u64::MAX / 4, value);
+    }
+
+    fn publish_at(&mut self, time_ns: u64, value: u8) {
+        self.writers[0].publish(time_ns, &[value]);
     }
 }
 
@@ -129,6 +133,82 @@ fn a_tree_that_comes_back_has_nodes_with_other_numbers() {
     let (second, value) = sample(&heard);
     assert_eq!((second.node.path.as_str(), value), ("b", 7));
     assert_ne!(first.number, second.number, "a file would take it for a");
+}
+
+/// One who needs all samples, and starts what gives them.
+struct Needy(Sender<Entry>);
+
+impl Listener for Needy {
+    fn wants(&self) -> Wants {
+        Box::new(|_| Some(Wish::Samples))
+    }
+
+    fn put(&mut self, entries: &[Entry], _now_ns: u64) -> bool {
+        (entries.iter()).all(|entry| self.0.send(entry.clone()).is_ok())
+    }
+}
+
+#[test]
+fn one_who_needs_more_brings_nobody_a_sample_twice() {
+    let mut tree = Tree::new();
+    tree.mount("a");
+    let desk = desk(&tree);
+    let (tell, heard) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    for value in 1..4 {
+        tree.publish_at(u64::MAX / 4 + u64::from(value), value);
+        assert_eq!(sample(&heard).1, value);
+    }
+    let (tell, late) = channel();
+    desk.listen(Box::new(Needy(tell)));
+    // What the node had then comes to one who is new.
+    assert_eq!(sample(&late).1, 3);
+    tree.publish_at(u64::MAX / 4 + 4, 4);
+    assert_eq!(sample(&heard).1, 4);
+    assert_eq!(sample(&late).1, 4);
+}
+
+#[test]
+fn bytes_of_devices_come_to_those_who_ask() {
+    let mut tree = Tree::new();
+    tree.mount("a");
+    let raw = tree.rings.join(place::raw_file_name("a").unwrap());
+    let rights = Rights {
+        mode: 0o600,
+        group: None,
+    };
+    let mut raw = Writer::create(&raw, 2, rights).unwrap();
+    let desk = desk(&tree);
+    let (tell, plain) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    let (tell, all) = channel();
+    desk.listen(Box::new(Asking(tell)));
+    // Both are there once they have a sample.
+    tree.publish_at(u64::MAX / 4, 1);
+    assert_eq!((sample(&plain).1, sample(&all).1), (1, 1));
+    raw.publish(u64::MAX / 4 + 1, &[7, 7]);
+    let (known, value) = sample(&all);
+    assert_eq!((known.node.is_raw, value), (true, 7));
+    tree.publish_at(u64::MAX / 4 + 2, 2);
+    let (known, value) = sample(&plain);
+    assert_eq!((known.node.is_raw, value), (false, 2));
+}
+
+/// One who asks for bytes of devices.
+struct Asking(Sender<Entry>);
+
+impl Listener for Asking {
+    fn wants(&self) -> Wants {
+        Box::new(|_| Some(Wish::ByTheClock))
+    }
+
+    fn wants_raw(&self) -> bool {
+        true
+    }
+
+    fn put(&mut self, entries: &[Entry], _now_ns: u64) -> bool {
+        (entries.iter()).all(|entry| self.0.send(entry.clone()).is_ok())
+    }
 }
 
 /// Waits until something holds.

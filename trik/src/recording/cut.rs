@@ -2,6 +2,7 @@
 //!
 //! Owns which messages are in the piece. Everything else of the recording goes with it, so that it explains itself too.
 
+use super::failed;
 use super::fresh::Fresh;
 use super::shared::{Watched, moment, open, seconds};
 use crate::error::Error;
@@ -10,6 +11,7 @@ use crate::refusal::Refusal;
 use crate::terminal::named;
 use clap::Args;
 use journal::mend::copy;
+use journal::node::path_of;
 use recorder::pattern::matches;
 use std::io::BufWriter;
 use std::path::PathBuf;
@@ -54,14 +56,15 @@ pub(crate) fn run(args: &CutArgs) -> Result<u8, Refusal> {
         return Err(Error::file(&args.file, why).into());
     }
     let is_wanted = |topic: &str, at: u64| {
-        let path = topic.trim_start_matches('/');
-        let is_named = args.only.is_empty() || args.only.iter().any(|one| matches(one, path));
+        let name = topic.trim_start_matches('/');
+        let is_it = |one: &String| matches(one, name) || matches(one, path_of(name));
+        let is_named = args.only.is_empty() || args.only.iter().any(is_it);
         is_named && (from..=to).contains(&at)
     };
     let fresh = Fresh::new(&args.output, &args.file, args.force)?;
     let source = Watched::open(&args.file)?;
     let kept = copy(source, BufWriter::new(fresh.file()?), is_wanted);
-    let kept = kept.map_err(|why| Error::file(&args.file, why))?;
+    let kept = kept.map_err(|why| failed(&args.file, &args.output, why))?;
     // Half of a piece is none.
     if let Some(why) = kept.cut {
         return Err(Error::file(&args.file, why).into());

@@ -8,14 +8,16 @@ use super::target::{Target, target, the_one};
 use crate::error::Error;
 use crate::limits;
 use crate::output::Output;
+use crate::record::NO_RAW;
 use crate::record::args::RecordArgs;
 use crate::recording::fresh::Fresh;
 use crate::refusal::Refusal;
 use crate::up::session::signals;
 use clap::Args;
+use journal::read::Reader;
 use nix::sys::signalfd::SignalFd;
 use std::fs::File;
-use std::io::{self, BufWriter, IsTerminal, Read, Write};
+use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -44,6 +46,9 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
     if let Some(rate_hz) = args.hz {
         wanted.push_str(&format!(";hz={rate_hz}"));
     }
+    if args.raw {
+        wanted.push_str(";raw");
+    }
     let seconds = args
         .seconds
         .map(|seconds| Duration::from_secs(seconds.into()));
@@ -57,8 +62,21 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
     // It grows under its name, for programs that look at it meanwhile.
     let place = Output::recording(&args.output, args.force).make_room()?;
     let file = File::create_new(&place).map_err(|error| Error::file(&args.output, error))?;
-    let kept = keep(pieces, &args.output, &file)?;
-    kept.tell()
+    let hint = "; trik mend keeps what was written before";
+    let kept = keep(pieces, &args.output, &file, hint)?;
+    kept.tell()?;
+    match args.raw && !has_raw(&args.output)? {
+        // All else is there.
+        true => Err(Error::file(&args.output, NO_RAW).into()),
+        false => Ok(0),
+    }
+}
+
+/// Whether a recording has anything of devices.
+fn has_raw(path: &Path) -> Result<bool, Error> {
+    let file = File::open(path).map_err(|error| Error::file(path, error))?;
+    let reader = Reader::open(BufReader::new(file)).map_err(|why| Error::file(path, why))?;
+    Ok(!reader.raws().is_empty())
 }
 
 /// Fetches the last minutes of a robot, which has saved them as well.
@@ -76,7 +94,7 @@ pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
     let mut pieces = Pieces::of(&robot, &[b"box"], None)?;
     pieces.wait()?;
     let fresh = Fresh::new(&args.output, Path::new(""), args.force)?;
-    let kept = keep(pieces, &args.output, &fresh.file()?)?;
+    let kept = keep(pieces, &args.output, &fresh.file()?, "")?;
     // A part is better than nothing, but not than what is there.
     if kept.failure.is_none() || !args.output.exists() {
         fresh.place()?;
@@ -102,15 +120,19 @@ impl Kept {
     }
 }
 
-/// Puts all pieces into a file that has this name for a person; the first is there.
-fn keep(mut pieces: Pieces, name: &Path, file: &File) -> Result<Kept, Error> {
+/// Puts all pieces into a file that has this name for a person, with a hint if the disk takes no more; the first is there.
+fn keep(mut pieces: Pieces, name: &Path, file: &File, hint: &str) -> Result<Kept, Error> {
     let begin = Instant::now();
     let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
     if pieces.is_watched {
         // A terminal that is gone has nothing to clear.
         let _ = write!(io::stderr(), "\r\x1b[K");
     }
-    let saved = saved.map_err(|error| Error::file(name, error))?;
+    let saved = saved.map_err(|error| {
+        let is_full = matches!(error, journal::error::Error::Output(_));
+        let hint = if is_full { hint } else { "" };
+        Error::file(name, format!("{error}{hint}"))
+    })?;
     let size = file.metadata().map_or(0, |file| file.len());
     let line = format!(
         "{}: {}; {:.1} s, {} messages, {} KiB\n",

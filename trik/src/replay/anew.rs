@@ -75,7 +75,7 @@ impl Run {
     pub(super) fn open(of: &Of<'_>) -> Result<Self, Error> {
         let (path, config, include) = (of.file, of.config, of.include);
         let mut plain = open(path)?;
-        if !has_raw(&plain) {
+        if !plain.has_raw() {
             let why = "it has no bytes of devices, which another configuration could convert: record it with trik record \
                        --raw, on a robot of trik up --raw or of nodes with raw = true";
             return Err(Error::file(path, why));
@@ -234,14 +234,6 @@ impl Run {
             Err(why) => Some(Err(why)),
         })
     }
-}
-
-/// Whether devices gave anything; a piece of a recording may have their topics alone.
-fn has_raw(plain: &Opened) -> bool {
-    let (counts, all) = plain.counts();
-    let is_raw = |(topic, count): (&String, &u64)| topic.starts_with("/raw/") && *count > 0;
-    // Without counts it is not known.
-    !plain.raws().is_empty() && (all == 0 || counts.iter().any(is_raw))
 }
 
 /// Which of the sources a node gets: that of its name or second name, or else one that was the same in the configuration

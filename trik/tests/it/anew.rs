@@ -2,16 +2,18 @@
 //!
 //! Owns the recording of a made-up robot whose devices were recorded, and one of a virtual robot.
 
+use crate::programs::Reachable;
 use crate::replay::Recorder;
 use crate::rig::{Home, Robot, TRIK};
 use harness::{Board, Output, eventually, tools};
 use journal::node::Node;
 use journal::write::Writer;
-use nix::sys::signal::Signal;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 const MS: u64 = 1_000_000;
@@ -263,10 +265,76 @@ fn a_virtual_robot_makes_the_same_of_its_bytes_once_more() {
 }
 
 #[test]
+fn bytes_of_devices_come_over_the_network_and_are_in_the_black_box() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let robot = Reachable::beside(&home, &["--raw"]);
+    let refused = home.run(&["record", "--robot", robot.ip(), "--raw", "--hz", "5"]);
+    assert!(
+        refused.stderr.contains("leave --hz out"),
+        "{}",
+        refused.stderr
+    );
+    let words = [
+        "--robot",
+        robot.ip(),
+        "--raw",
+        "--only",
+        "sensors",
+        "--only",
+        "encoders",
+    ];
+    let recorder = Recorder::start_to(&home, "run.mcap", &words);
+    eventually("a recording", || home.0.path("run.mcap").exists());
+    // Another client, who has not asked for them, has none.
+    let plain = ["--robot", robot.ip(), "--only", "sensors"];
+    let plain = Recorder::start_to(&home, "plain.mcap", &plain);
+    robot.robot.drive(30, 40);
+    eventually("a way", || robot.robot.number("encoders/E3/value") > 300.0);
+    robot.robot.write("stop", "1").expect("stop");
+    eventually("a recording", || home.0.path("plain.mcap").exists());
+    recorder.end();
+    plain.end();
+    let info = home.run(&["info", "run.mcap"]).good();
+    assert!(info.contains("raw/sensors/A1"), "{info}");
+    assert!(!info.contains("raw/gyroscope"), "not asked for: {info}");
+    let other = home.run(&["info", "plain.mcap"]).good();
+    assert!(!other.contains("raw/"), "{other}");
+    home.run(&["box", "save", "-o", "box.mcap", "--robot", robot.ip()])
+        .good();
+    let kept = home.run(&["info", "box.mcap"]).good();
+    assert!(kept.contains("raw/gyroscope"), "{kept}");
+    fs::copy(robot.robot.root.join("config"), home.0.path("same.lua")).expect("a copy");
+    for file in ["run.mcap", "box.mcap"] {
+        let words = [
+            "replay", file, "--config", "same.lua", "--diff", "--only", "sensors", "--only",
+            "encoders",
+        ];
+        let said = home.run(&words).good();
+        assert!(said.lines().count() >= 10, "{said}");
+        let is_same = |line: &str| line.ends_with("as recorded") || line.contains("lost events");
+        assert!(said.lines().all(is_same), "{file}: {said}");
+    }
+}
+
+#[test]
 fn a_tree_without_bytes_of_devices_says_how_there_are_some() {
     let Some(home) = Home::new() else { return };
     let home = Arc::new(home);
-    let mut robot = Robot::start(home.clone(), &[]);
+    let mut robot = Reachable::beside(&home, &[]);
+    let words = ["record", "--raw", "-o", "far.mcap", "--robot", robot.ip()];
+    let mut command = home.command(&words);
+    let recorder = command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let recorder = recorder.spawn().expect("trik record");
+    eventually("a recording", || home.0.path("far.mcap").exists());
+    let pid = Pid::from_raw(i32::try_from(recorder.id()).expect("a pid"));
+    kill(pid, Signal::SIGINT).expect("SIGINT");
+    let refused = recorder.wait_with_output().expect("an end");
+    assert_eq!(refused.status.code(), Some(1));
+    let why = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(why.contains("trik up --raw"), "{why}");
+    // What there is stays.
+    home.run(&["info", "far.mcap"]).good();
     let refused = home.run(&["record", "--raw", "-o", "run.mcap"]);
     assert_eq!(refused.status.code(), Some(1));
     assert!(
@@ -275,5 +343,5 @@ fn a_tree_without_bytes_of_devices_says_how_there_are_some() {
         refused.stderr
     );
     assert!(!home.0.path("run.mcap").exists());
-    assert!(robot.end(Signal::SIGINT).success());
+    assert!(robot.robot.end(Signal::SIGINT).success());
 }

@@ -6,7 +6,7 @@ use journal::read::{EventKind, Reader};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
 use std::process::{Child, Stdio};
 use std::sync::Arc;
@@ -278,6 +278,16 @@ fn a_recording_that_ends_is_well_and_one_that_is_damaged_is_not() {
     assert!(failed.stderr.contains("damaged"), "{}", failed.stderr);
 }
 
+/// Where the first chunk of a recording is: each record has an opcode, that of a chunk is 6, and a length.
+fn first_chunk(bytes: &[u8]) -> usize {
+    let mut at = 8;
+    while bytes[at] != 6 {
+        let length = bytes[at + 1..at + 9].try_into().map(u64::from_le_bytes);
+        at += 9 + usize::try_from(length.expect("8 bytes")).expect("a length");
+    }
+    at
+}
+
 #[test]
 fn a_killed_recorder_leaves_what_can_be_mended() {
     let Some(home) = Home::new() else { return };
@@ -299,8 +309,8 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     assert_eq!(refused.status.code(), Some(1));
     assert!(refused.stderr.contains("trik mend"), "{}", refused.stderr);
     assert_eq!(home.run(&["info", "run.mcap"]).status.code(), Some(1));
-    let private = std::fs::Permissions::from_mode(0o600);
-    std::fs::set_permissions(&path, private).expect("a mode");
+    let private = fs::Permissions::from_mode(0o600);
+    fs::set_permissions(&path, private).expect("a mode");
     let mended = home.run(&["mend", "run.mcap"]);
     assert_eq!(mended.status.code(), Some(0), "{}", mended.stderr);
     let mode = path.metadata().expect("a file").permissions().mode();
@@ -312,6 +322,28 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     let again = home.run(&["mend", "run.mcap"]);
     assert!(again.stdout.contains("it is whole"), "{}", again.stdout);
     home.0.file("old.mcap", "old");
+    // One that is damaged in the middle is not replaced, and a new file has what is whole.
+    let mut damaged = fs::read(home.0.path("run.mcap")).expect("a recording");
+    let chunk = first_chunk(&damaged);
+    // Behind what a chunk says of itself, in what is compressed.
+    damaged[chunk + 9 + 45] ^= 1;
+    fs::write(home.0.path("damaged.mcap"), &damaged).expect("a file");
+    let refused = home.run(&["mend", "damaged.mcap"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        refused.stderr.contains("not only cut"),
+        "{}",
+        refused.stderr
+    );
+    let mended = home
+        .run(&["mend", "damaged.mcap", "-o", "whole.mcap"])
+        .good();
+    assert!(mended.contains("left out: 1 damaged"), "{mended}");
+    home.run(&["info", "whole.mcap"]).good();
+    assert_eq!(
+        fs::read(home.0.path("damaged.mcap")).expect("it stays"),
+        damaged
+    );
     let words = ["mend", "run.mcap", "-o", "old.mcap"];
     let refused = home.run(&words);
     assert_eq!(refused.status.code(), Some(1));

@@ -38,6 +38,8 @@ export class Memory implements Sink {
   strange = 0;
   readonly #room = { numbers: NUMBERS_MAX, textBytes: TEXT_BYTES_MAX };
   readonly #schemas = new Map<number, readonly Part[] | 'none'>();
+  /** Paths of nodes by the names that failures have. */
+  readonly #paths = new Map<string, string>();
   readonly #channels = new Map<number, Track | string>();
   #first = Infinity;
   #last = -Infinity;
@@ -71,6 +73,7 @@ export class Memory implements Sink {
       const track = new Track(node, parts, this.#room);
       this.#spend([topic, ...words.values()].join('').length);
       this.tracks.set(node.path, track);
+      this.#paths.set(topic.slice(1), node.path);
       this.#channels.set(id, track);
     } else if (!node && (isLines(topic) || topic === WORLD)) {
       this.#channels.set(id, topic);
@@ -126,7 +129,8 @@ export class Memory implements Sink {
     if (level === undefined || name === undefined || text === undefined || errno === undefined) {
       this.strange++;
     } else if (topic === FAULTS) {
-      this.tracks.get(name.replace(/^\//, ''))?.fault(time, text);
+      const said = name.replace(/^\//, '');
+      this.tracks.get(this.#paths.get(said) ?? said)?.fault(time, text);
       this.#count(time);
     } else {
       const lines = topic === DIAGRAM ? this.steps : topic === WORLD ? this.places : this.lines;

@@ -69,7 +69,8 @@ export function nodeOf(topic: string, words: ReadonlyMap<string, string>): Node 
   const format = words.get('format');
   if (format === undefined) return undefined;
   return {
-    path: topic.slice(1),
+    // A node with a name of something else has a topic apart from it.
+    path: words.get('path') ?? topic.slice(1),
     format,
     units: words.get('units') ?? '',
     about: words.get('about') ?? '',
@@ -83,6 +84,8 @@ export class Recording {
   #reader = new McapStreamReader();
   readonly #schemas = new Map<number, string>();
   readonly #channels = new Map<number, Channel>();
+  /** Paths of nodes by the names that failures have. */
+  readonly #paths = new Map<string, string>();
 
   constructor(private readonly taker: Taker) {}
 
@@ -114,7 +117,9 @@ export class Recording {
     const node = nodeOf(topic, words);
     if (!node && !isLines(topic)) return;
     this.#channels.set(id, { topic, node, reader: new MessageReader(parse(text, { ros2: true })) });
-    if (node) this.taker.node(node);
+    if (!node) return;
+    this.#paths.set(topic.slice(1), node.path);
+    this.taker.node(node);
   }
 
   #message(id: number, time: number, data: Uint8Array): void {
@@ -126,7 +131,8 @@ export class Recording {
       this.taker.sample(channel.node.path, time, Object.fromEntries(fields));
     } else {
       const log = channel.reader.readMessage<Log>(data);
-      const { level, name, msg: text, line: errno } = log;
+      const { level, msg: text, line: errno } = log;
+      const name = (channel.topic === '/faults' ? this.#paths.get(log.name) : undefined) ?? log.name;
       this.taker.line({ topic: channel.topic, time, level, name, text, errno });
     }
   }
