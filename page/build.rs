@@ -25,9 +25,11 @@ const SOURCES: [&str; 10] = [
 
 /// How the list of files begins.
 const HEAD: &str = "/// All files of the page.\npub const FILES: &[File] = &[\n";
-/// How the list of those begins that only the page of a class loads.
+/// How the list of those begins that only the pages of a class and of marks load.
 const OF_CLASS: &str =
-    "/// Those of the page of a class alone.\npub const OF_CLASS: &[File] = &[\n";
+    "/// Those of the pages of a class and of marks alone.\npub const OF_CLASS: &[File] = &[\n";
+/// How the names of these begin.
+const CLASS_NAMES: [&str; 2] = ["assets/Class-", "assets/Marks-"];
 
 /// Why there is no page. The person who builds can mend each.
 enum NoPage {
@@ -185,7 +187,7 @@ fn list(made: &Path) -> io::Result<String> {
         let name = path.strip_prefix(made).unwrap_or(&path).with_extension("");
         let name = name.to_string_lossy();
         let kind = kind(&name);
-        let list = match name.starts_with("assets/Class-") {
+        let list = match CLASS_NAMES.iter().any(|start| name.starts_with(start)) {
             true => &mut of_class,
             false => &mut text,
         };

@@ -38,7 +38,7 @@ use std::sync::Arc;
 use tokio::sync::Semaphore;
 
 pub use member::{Found, Member, OwnPage, Whereabouts};
-pub use robot::{EXPLAINED, STARTED};
+pub use robot::{BATTERY, COMMANDER, DEBUGGER, EXPLAINED, STARTED};
 pub use upload::REFUSALS;
 
 /// The path of the page, by which it knows that it is this one.

@@ -15,8 +15,8 @@ pub struct File {
 
 include!(concat!(env!("OUT_DIR"), "/files.rs"));
 
-/// The file of a path; the root is the page itself. Those of the page of a class are found for that alone, so that a program
-/// without it does not have them.
+/// The file of a path; the root is the page itself. Those of the pages of a class and of marks are found for these alone, so that a
+/// program without them does not have them.
 pub fn find_of_class(path: &str) -> Option<&'static File> {
     let name = path.trim_start_matches('/');
     find(path).or_else(|| OF_CLASS.iter().find(|file| file.path == name))

@@ -87,7 +87,11 @@ pub async fn enter(
     };
     let headers = answer.headers_mut();
     for (name, value) in guard::HEADERS {
-        headers.insert(name, HeaderValue::from_static(value));
+        // What an answer says of itself counts: the page of a replay has a policy of its own.
+        let name = HeaderName::from_static(name);
+        headers
+            .entry(name)
+            .or_insert(HeaderValue::from_static(value));
     }
     if is_page && refused.is_none() {
         let cookie = guard::cookie(&gate.token, gate.port);

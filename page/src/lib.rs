@@ -5,7 +5,7 @@
 //! hardly looked at: the page speaks it as every other client does.
 //!
 //! - `server`, `serving`, `door`, `route`: the page, its thread, connections, and which address gives what
-//! - `class`: the page of many robots, which has an own server
+//! - `class`, `marks`: the pages of many robots and of marks that come, each with a server of its own
 //! - `seats`, `admission`: which connections have a place and which lose it; the places of browsers
 //! - `guard`, `gate`: Host, Origin and the cookie, and what all requests pass
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
@@ -39,6 +39,7 @@ mod guard;
 mod guests;
 mod inside;
 pub mod limits;
+pub mod marks;
 mod plain;
 pub mod playback;
 mod relay;

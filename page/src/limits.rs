@@ -119,6 +119,8 @@ pub const CLASS_LATEST_TIME: Duration = Duration::from_secs(8);
 pub const CLASS_SILENCE_TIME: Duration = Duration::from_secs(8);
 /// How often one is asked what runs, beside when it has told that something has changed.
 pub const CLASS_LOOK_TIME: Duration = Duration::from_secs(6);
+/// Until one that was just reached is asked the second time.
+pub const CLASS_AGAIN_TIME: Duration = Duration::from_secs(1);
 /// An order to stop is given to a robot that comes back within this time.
 pub const CLASS_STOP_TIME: Duration = Duration::from_secs(60);
 /// How long a file may take to one robot.
@@ -131,3 +133,9 @@ pub const CLASS_MESSAGE_BYTES_MAX: usize = 1 << 20;
 pub const CLASS_LETTERS_MAX: usize = 300;
 /// Bytes of the name of a program.
 pub const CLASS_NAME_BYTES_MAX: usize = 200;
+/// How often a viewer of marks is told of new ones, in the best case.
+pub const MARKS_TIME: Duration = Duration::from_millis(50);
+/// Bytes of the page of a replay.
+pub const REPLAY_BYTES_MAX: u64 = 32 << 20;
+/// Replays that are read at once.
+pub const REPLAYS_AT_ONCE: usize = 4;

@@ -11,7 +11,9 @@ mod explain;
 mod grade_args;
 mod grades;
 mod jobs;
+mod live;
 pub(crate) mod original;
+mod page_args;
 mod platform;
 mod points;
 mod pool;
@@ -35,6 +37,7 @@ pub(crate) use args::{CheckArgs, model_seconds};
 use grades::Grades;
 use jobs::Job;
 use lang_text::problem::Locale;
+use live::{Live, Replays};
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
@@ -69,7 +72,8 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
         let staged = staged(args).map_err(debug::refusal)?;
         return debug::talk(&staged, None, Start::Running);
     }
-    if !args.grades.out.is_empty() || args.grades.tasks.is_some() {
+    let has_table = !args.grades.out.is_empty() || args.grades.tasks.is_some();
+    if has_table || args.marks.is_served {
         return class(args);
     }
     let jobs = jobs::jobs(args)?;
@@ -90,7 +94,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     }
     match &jobs[..] {
         [job] => one(job, args, results),
-        _ => many(&jobs, args, results, None),
+        _ => many(&jobs, args, results, None, None),
     }
 }
 
@@ -101,10 +105,11 @@ fn answer(jobs: &[Job], args: &CheckArgs, platform: Platform) -> Result<u8, Refu
         [job] => rows.push(pool::run_one(job.clone(), args)),
         jobs => {
             make_folders(args)?;
-            pool::run(jobs, args, |_, row| {
+            let take = |_, row| {
                 rows.push(row);
                 Ok(())
-            })?;
+            };
+            pool::run(jobs, args, |_, _| {}, take)?;
         }
     }
     let answer = platform.answer(&rows, args.full_points, args.language);
@@ -138,6 +143,7 @@ fn tell_left_out(args: &CheckArgs) {
 fn class(args: &CheckArgs) -> Result<u8, Refusal> {
     let mut args = args.clone();
     args.html = args.html.or_else(|| args.grades.replays());
+    let replays = Replays::settle(&mut args)?;
     let mut plan = class::plan(&args)?;
     if plan.columns.is_empty() || plan.pupils.is_empty() {
         return Err(Refusal::new(words::nobody(args.language)));
@@ -159,6 +165,29 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
         source: Path::new(""),
         locale: args.language,
     });
+    refuse_tables(&outputs, &args)?;
+    if let Some(results) = &results {
+        results.refuse_present()?;
+    }
+    refuse_present(&jobs, &args, false)?;
+    say(&plan.notes);
+    tell_passed(&plan.left_out, plan.left_out_count, args.language);
+    let args = confine::settle(&jobs, &args)?;
+    let grades = Grades::new(plan, &args.grades, args.language);
+    let mut live = match args.marks.is_served {
+        true => Some(Live::start(&args, grades.clone(), replays)?),
+        false => None,
+    };
+    let grades = (!outputs.is_empty()).then_some((grades, &outputs[..]));
+    let code = many(&jobs, &args, results, grades, live.as_mut())?;
+    if let Some(live) = live {
+        live.stay(&args);
+    }
+    Ok(code)
+}
+
+/// Refuses tables that are there or have no place, before anything runs.
+fn refuse_tables(outputs: &[Output<'_>], args: &CheckArgs) -> Result<(), Refusal> {
     for (index, output) in outputs.iter().enumerate() {
         output.refuse_present()?;
         let folder = output.path.and_then(Path::parent);
@@ -171,16 +200,7 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
         let others: Vec<&Path> = others.chain(args.results.as_deref()).collect();
         output.spare(&others)?;
     }
-    if let Some(results) = &results {
-        results.refuse_present()?;
-    }
-    refuse_present(&jobs, &args, false)?;
-    say(&plan.notes);
-    tell_passed(&plan.left_out, plan.left_out_count, args.language);
-    let args = confine::settle(&jobs, &args)?;
-    let grades = Grades::new(plan, &args.grades, args.language);
-    let grades = (!outputs.is_empty()).then_some((grades, &outputs[..]));
-    many(&jobs, &args, results, grades)
+    Ok(())
 }
 
 /// Refuses files that are there before anything runs: afterwards a verdict would be lost with them.
@@ -267,14 +287,23 @@ fn many(
     args: &CheckArgs,
     results: Option<Output<'_>>,
     mut class: Option<(Grades, &[Output<'_>])>,
+    mut live: Option<&mut Live>,
 ) -> Result<u8, Refusal> {
     make_folders(args)?;
     let mut report = Report::new(jobs, args, results)?;
-    pool::run(jobs, args, |index, row| {
+    let replay = |index: usize| {
+        let folder = args.html.as_deref()?;
+        let page = jobs[index].place(folder, run::HTML, false);
+        Some(page).filter(|page| page.is_file())
+    };
+    let hear = |index: usize, row: &Row| {
+        if let Some(live) = &mut live {
+            live.add(index, row, replay(index));
+        }
+    };
+    pool::run(jobs, args, hear, |index, row| {
         if let Some((grades, _)) = &mut class {
-            let replay = args.html.as_deref();
-            let replay = replay.map(|folder| jobs[index].place(folder, run::HTML, false));
-            grades.add(index, &row, replay.filter(|page| page.is_file()));
+            grades.add(index, &row, replay(index));
         }
         report.add(index, &row)
     })?;

@@ -155,6 +155,8 @@ pub const LOG_BYTES_MAX: u64 = 256 << 20;
 pub(crate) const FIRST_SAMPLE_MS: u64 = 1_000;
 /// Programs of a recording that a person is told of, so that one of them can be chosen.
 pub(crate) const RUNS_TOLD: usize = 12;
+/// Cells and runs of a table that is shown while it is judged.
+pub const MARKS_MAX: usize = 10_000;
 /// Bytes of what a worker says of one run.
 pub const ROW_BYTES_MAX: usize = 4 << 20;
 /// How often what a judged program has left behind is looked for and killed.

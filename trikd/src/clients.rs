@@ -5,6 +5,7 @@
 pub mod debugging;
 
 use crate::outbox::{Latest, Outbox};
+use crate::protocol::news;
 use frame::encode;
 use page::seats::Whom;
 use std::cell::{Cell, RefCell};
@@ -184,6 +185,17 @@ impl Clients {
         }
     }
 
+    /// Lines for the status that every client may ask for: who commands, and who debugs.
+    pub fn describe_control(&self) -> String {
+        let commands = self.in_control.get();
+        let living = self.living();
+        let commands = commands.filter(|peer| living.iter().any(|client| client.peer == *peer));
+        let debugs = self.debugger.get();
+        let debugs = debugs.map(|holder| news::debugs(&holder.peer().to_string()));
+        let lines = [commands.map(news::commands), debugs];
+        lines.into_iter().flatten().collect()
+    }
+
     /// Lines for the status.
     pub fn describe(&self) -> String {
         let mut text = String::new();
@@ -232,5 +244,15 @@ mod tests {
         );
         assert_eq!(text.lines().count(), 2);
         drop(telemetry);
+        // What all may ask for: who commands, while that client is there, and who debugs.
+        assert_eq!(clients.describe_control(), "control 10.0.0.1:5\n");
+        clients.take_debugger(&control).unwrap();
+        assert_eq!(
+            clients.describe_control(),
+            "control 10.0.0.1:5\ndebugger 10.0.0.1:5 is in control\n"
+        );
+        clients.release_debugger(&control);
+        drop(control);
+        assert_eq!(clients.describe_control(), "");
     }
 }

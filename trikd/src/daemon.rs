@@ -5,6 +5,7 @@
 //! struct of its own, which is filled in here.
 
 use crate::access::Access;
+use crate::battery::Battery;
 use crate::clients::Clients;
 use crate::connection::Held;
 use crate::error::{BadUser, Error};
@@ -156,6 +157,7 @@ struct Parts {
     panics: Arc<Panics>,
     held: Rc<Held>,
     sampler: Rc<Sampler>,
+    battery: Rc<Battery>,
     rest: Rc<Rest>,
     feedback: Rc<Feedback>,
     reaper: Rc<Reaper>,
@@ -209,6 +211,7 @@ impl Parts {
             panics,
             held,
             sampler: Rc::new(Sampler::start(&settings.tree).map_err(Error::thread)?),
+            battery: Rc::new(Battery::start(&settings.tree).map_err(Error::thread)?),
             rest: Rc::new(Rest::start(&settings.tree).map_err(Error::thread)?),
             feedback: Rc::new(feedback),
             reaper: Rc::default(),
@@ -337,6 +340,7 @@ impl Parts {
     fn control(&self, recordings: Rc<Recordings>) -> Control {
         Control {
             recordings,
+            battery: self.battery.clone(),
             access: self.access.clone(),
             clients: self.clients.clone(),
             held: self.held.clone(),

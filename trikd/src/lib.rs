@@ -5,6 +5,7 @@
 //! child's side, `brick` and `tree` are the robot.
 
 pub mod access;
+pub mod battery;
 pub mod blame;
 pub mod brick;
 pub mod cli;

@@ -203,6 +203,17 @@ pub fn value(tree: &Path, path: &str) -> Option<String> {
     (!text.trim().is_empty()).then_some(text)
 }
 
+/// The unit of the node at a path below the tree; empty if it has none.
+pub fn unit(tree: &Path, path: &str) -> String {
+    let mut text = String::new();
+    let most = limits::VALUE_BYTES as u64;
+    // One that cannot be read is none.
+    if let Ok(file) = File::open(tree.join(path).join("units")) {
+        let _ = file.take(most).read_to_string(&mut text);
+    }
+    text.trim().to_owned()
+}
+
 impl Node {
     /// Where the file is.
     pub fn path(&self) -> &Path {

@@ -1,11 +1,12 @@
-// The picture of a class in the documents, made of robots that run.
+// The pictures of a class in the documents, made of robots that run, and of programs that are judged.
 //
 //   TRIK=target/debug/trik node e2e/class-shots.js
 //
-// It is written to docs/user/pictures; look at it before it is committed.
+// They are written to docs/user/pictures; look at them before they are committed.
 import { rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { ClassPage, Look, Robot, newHome } from './robot.js';
+import { ClassPage, Judging, Look, Robot, newHome } from './robot.js';
+import { ENDLESS, school } from './school.js';
 
 const folder = resolve(import.meta.dirname, '../../../docs/user/pictures');
 const DRIVE = "brick.motor('M3').setPower(40)\nscript.wait(60000)\n";
@@ -28,4 +29,28 @@ try {
   await room.end();
   for (const robot of robots) await robot.leave();
   rmSync(home, { recursive: true, force: true });
+}
+
+const pupils = { anna: 'good', boris: 'bad', clara: 'good', dmitri: '', vera: 'good', zhenya: ENDLESS };
+const classroom = newHome();
+const words = school(classroom, pupils);
+const judging = await Judging.start(
+  classroom,
+  ...words,
+  '--wall-limit',
+  '3000',
+  '--time-limit',
+  '3000',
+  '--pass-mark',
+  '1',
+);
+const others = await Look.start();
+try {
+  const page = await others.open(judging.url, { viewport: { width: 1000, height: 480 } });
+  await page.getByText('9 of 10 judged').waitFor();
+  await page.screenshot({ path: join(folder, 'marks.png') });
+} finally {
+  await others.end();
+  await judging.end();
+  rmSync(classroom, { recursive: true, force: true });
 }

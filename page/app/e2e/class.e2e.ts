@@ -56,6 +56,13 @@ test('a program is sent to all, runs on those that are there, and the space bar 
   }
   await clara.getByText('go.py: not done: the robot is not reached').waitFor();
   await page.getByRole('article', { name: 'anna' }).getByText('go.py has started').waitFor();
+  // As its tree has it, with the unit; and who has started the program.
+  for (const name of ['anna', 'boris']) {
+    const card = page.getByRole('article', { name });
+    await card.getByText(/^battery \d+(\.\d+)? V$/).waitFor();
+    await card.getByText('this page is in control').waitFor();
+  }
+  expect(await clara.getByText('battery').count()).toBe(0);
   await shot(page, 'runs');
   expect(await barriers(page)).toEqual([]);
   // Wherever the focus is.
@@ -98,6 +105,10 @@ test('a robot that was ended and started again is there again, and the others do
   await page.getByText('2 of 3 reached').waitFor();
   await boris.leave();
   await page.getByText('1 of 3 reached').waitFor();
+  // What its battery had is told with its age, and nobody is in control any more.
+  const gone = page.getByRole('article', { name: 'boris' });
+  await gone.getByText(/^battery .* V, \d+ s ago$/).waitFor();
+  expect(await gone.getByText('in control').count()).toBe(0);
   await page.getByRole('article', { name: 'boris' }).getByText('no virtual robot of yours').waitFor();
   await page.setInputFiles(file, program());
   await page.getByRole('button', { name: 'Send to 3 and run' }).click();

@@ -4,8 +4,8 @@
 
 import axe from 'axe-core';
 import { chromium } from 'playwright-core';
-import { spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { spawn, spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
@@ -234,6 +234,79 @@ export class ClassPage {
     this.#child.kill('SIGINT');
     await ended;
   }
+}
+
+/** A class that is judged, with its page of marks. */
+export class Judging {
+  said = '';
+  /** @type {import('node:child_process').ChildProcess} */
+  child;
+
+  /** @param {string} folder @param {string[]} args */
+  constructor(folder, args) {
+    // Replays that nobody names a folder for go below this one, so that it can be seen that they go.
+    const env = { ...process.env, TMPDIR: folder };
+    const words = ['check', ...args, '--page', '--page-port', '0'];
+    this.child = spawn(TRIK, words, { cwd: folder, env, stdio: ['ignore', 'pipe', 'pipe'] });
+    for (const stream of [this.child.stdout, this.child.stderr]) {
+      stream?.on('data', (/** @type {Buffer} */ text) => (this.said += text.toString()));
+    }
+  }
+
+  /**
+   * Begins to judge what these words of `trik check` say, in a folder.
+   * @param {string} folder
+   * @param {string[]} args
+   */
+  static async start(folder, ...args) {
+    const judging = new Judging(folder, args);
+    const { child } = judging;
+    await eventually('the marks are served', () => judging.url !== '' || child.exitCode !== null, START_MS);
+    if (judging.url === '') throw new Error(`there is no page: ${judging.said}`);
+    return judging;
+  }
+
+  get url() {
+    return /in a browser: (\S+)/.exec(this.said)?.[1] ?? '';
+  }
+
+  /** The processes that judge. */
+  get workers() {
+    const threads = readdirSync(`/proc/${this.child.pid}/task`);
+    /** @param {string} thread */
+    const children = (thread) => {
+      try {
+        return readFileSync(`/proc/${this.child.pid}/task/${thread}/children`, 'utf8').split(' ');
+      } catch {
+        // It has ended meanwhile.
+        return [];
+      }
+    };
+    return threads.flatMap(children).filter(Boolean).map(Number);
+  }
+
+  /**
+   * Ends it as a person does, and gives its exit code, or the signal that it has ended by.
+   * @param {NodeJS.Signals} signal
+   */
+  async end(signal = 'SIGINT') {
+    if (this.child.exitCode === null && this.child.signalCode === null) {
+      const ended = new Promise((end) => this.child.once('close', end));
+      this.child.kill(signal);
+      await ended;
+    }
+    return this.child.exitCode ?? this.child.signalCode;
+  }
+}
+
+/**
+ * Makes a task for programs in a folder of this name, as `trik new-task` does.
+ * @param {string} folder
+ * @param {string} name
+ */
+export function newTask(folder, name) {
+  const done = spawnSync(TRIK, ['new-task', name], { cwd: folder, encoding: 'utf8' });
+  if (done.status !== 0) throw new Error(`trik new-task: ${done.stdout}${done.stderr}`);
 }
 
 /**

@@ -1,4 +1,4 @@
-// Where the page begins: that of a robot, or at another path that of a class, which is loaded for it alone.
+// Where the page begins: that of a robot, or at other paths that of a class and that of marks, each loaded for itself alone.
 
 import { mount } from 'svelte';
 import './ui/page.css';
@@ -9,4 +9,6 @@ document.documentElement.lang = language;
 const target = document.getElementById('page');
 if (target && location.pathname === '/class') {
   void import('./class/Class.svelte').then(({ default: Class }) => mount(Class, { target }));
+} else if (target && location.pathname === '/marks') {
+  void import('./marks/Marks.svelte').then(({ default: Marks }) => mount(Marks, { target }));
 } else if (target) mount(App, { target });

@@ -23,6 +23,24 @@ pub enum Reach {
     Absent(Why),
 }
 
+/// What the battery of a robot had.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Battery {
+    /// The value with its unit, as the robot has it.
+    pub text: String,
+    /// When that was.
+    pub at: Instant,
+}
+
+/// Who commands a robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Commander {
+    /// This program.
+    Own,
+    /// A client at this address.
+    Other(String),
+}
+
 /// What became of the last stop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
@@ -75,6 +93,12 @@ pub struct Card {
     pub last: Option<String>,
     /// What it has told of as an error since its last start.
     pub error: Option<String>,
+    /// Stays with its age when the robot is gone.
+    pub battery: Option<Battery>,
+    /// Who has started or stopped a program last, and is there.
+    pub commander: Option<Commander>,
+    /// Who controls its debugger.
+    pub debugger: Option<String>,
     pub stop: Option<Stop>,
     pub sending: Option<Sending>,
 }
@@ -136,6 +160,9 @@ impl Board {
             runs: None,
             last: None,
             error: None,
+            battery: None,
+            commander: None,
+            debugger: None,
             stop: None,
             sending: None,
         };

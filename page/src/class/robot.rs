@@ -3,7 +3,7 @@
 //! Owns the connection and what a robot's words mean for its card. A stop overtakes all that was not sent yet; files have
 //! connections of their own, so that none is in its way.
 
-use super::board::{Board, Card, Reach, Stage, Stop};
+use super::board::{Battery, Board, Card, Commander, Reach, Stage, Stop};
 use super::member::{Found, Whereabouts};
 use super::words::Why;
 use crate::error::plain;
@@ -13,12 +13,14 @@ use futures_util::FutureExt;
 use std::io;
 use std::net::SocketAddr;
 use std::panic::AssertUnwindSafe;
+use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::sync::{Notify, mpsc};
-use tokio::time::{Instant, MissedTickBehavior, interval, sleep, timeout};
+use tokio::time::{Instant, MissedTickBehavior, Sleep, interval, sleep, timeout};
 
 /// How errors begin that say why not everything rests; others are those of a program.
 pub const EXPLAINED: [&str; 4] = [
@@ -29,6 +31,13 @@ pub const EXPLAINED: [&str; 4] = [
 ];
 /// What a robot says of a program that has started, after its name.
 pub const STARTED: &str = " has started";
+
+/// How the line of a status begins that tells of the battery.
+pub const BATTERY: &str = "battery ";
+/// That of who commands.
+pub const COMMANDER: &str = "control ";
+/// That of who debugs.
+pub const DEBUGGER: &str = "debugger ";
 
 /// Keeps the connection for ever, also after a panic of this program.
 pub async fn run(board: Arc<Board>, id: usize, whereabouts: Arc<dyn Whereabouts>) {
@@ -58,7 +67,8 @@ async fn keep(
                     card.reach = Reach::There(at);
                     card.page = found.page;
                 });
-                let talk = Talk::new(board, id);
+                let own = stream.local_addr().ok();
+                let talk = Talk::new(board, id, own);
                 let why = talk.run(stream, runs).await;
                 // One that lets people in and says nothing is not asked more often for that.
                 if talk.has_answered() {
@@ -103,6 +113,8 @@ fn keep_stop(board: &Board, id: usize) -> bool {
 fn lose(card: &mut Card, why: Why) {
     card.reach = Reach::Absent(why);
     card.runs = None;
+    card.commander = None;
+    card.debugger = None;
     if let Some(sending) = &mut card.sending
         && matches!(sending.stage, Stage::Starts)
     {
@@ -165,16 +177,19 @@ struct Progress {
 struct Talk<'a> {
     board: &'a Board,
     id: usize,
+    /// This end of the connection, as the robot calls it.
+    own: Option<SocketAddr>,
     progress: Mutex<Progress>,
     /// Something has happened of which the status tells.
     news: Notify,
 }
 
 impl<'a> Talk<'a> {
-    fn new(board: &'a Board, id: usize) -> Self {
+    fn new(board: &'a Board, id: usize, own: Option<SocketAddr>) -> Self {
         Self {
             board,
             id,
+            own,
             progress: Mutex::default(),
             news: Notify::new(),
         }
@@ -208,6 +223,8 @@ impl<'a> Talk<'a> {
         keepalives.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut looks = interval(limits::CLASS_LOOK_TIME);
         looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        // A robot that was not asked before has not looked at its battery: it tells of it when it is asked again.
+        let mut soon = Some(Box::pin(sleep(limits::CLASS_AGAIN_TIME)));
         loop {
             let request = tokio::select! {
                 biased;
@@ -222,6 +239,7 @@ impl<'a> Talk<'a> {
                 () = self.news.notified() => self.status(),
                 // News that the robot has left out are found so.
                 _ = looks.tick() => self.status(),
+                () = again(&mut soon) => self.status(),
                 _ = keepalives.tick() => encode(b"keepalive"),
             };
             if let Err(error) = write.write_all(&request).await {
@@ -299,6 +317,9 @@ impl<'a> Talk<'a> {
     fn told(&self, text: &str) {
         let line = |word: &str| text.lines().find_map(|line| line.strip_prefix(word));
         let runs = line("program ").filter(|name| *name != "none").map(name_of);
+        let battery = line(BATTERY).and_then(battery);
+        let commander = line(COMMANDER).map(|who| self.commander(who));
+        let debugger = line(DEBUGGER).map(address);
         let (mut stopped, mut started) = (None, None);
         {
             let mut progress = self.progress();
@@ -327,6 +348,9 @@ impl<'a> Talk<'a> {
                 card.stop = Some(unrest.map_or(Stop::Rests(ms), Stop::Failed));
             }
             card.last = line("last ").map(short);
+            card.battery = battery;
+            card.commander = commander;
+            card.debugger = debugger;
             let is_it = |name: &String| runs.as_deref() == Some(name.as_str());
             if let (Some(name), Some(sending)) = (&started, &mut card.sending)
                 && sending.name == *name
@@ -352,10 +376,46 @@ impl<'a> Talk<'a> {
         });
     }
 
+    /// Who commands, in the words of a status.
+    fn commander(&self, who: &str) -> Commander {
+        let is_own = self.own.is_some_and(|own| who.trim() == own.to_string());
+        match is_own {
+            true => Commander::Own,
+            false => Commander::Other(address(who)),
+        }
+    }
+
     /// The robot has said what nothing else says.
     fn has_answered(&self) -> bool {
         self.progress().answered > 0
     }
+}
+
+/// Waits for the time once.
+async fn again(once: &mut Option<Pin<Box<Sleep>>>) {
+    match once {
+        Some(time) => {
+            time.await;
+            *once = None;
+        }
+        None => std::future::pending().await,
+    }
+}
+
+/// What a status says of the battery, as `11.8 V, 3 s ago`.
+fn battery(text: &str) -> Option<Battery> {
+    let (value, age) = text.trim().rsplit_once(", ")?;
+    let seconds: u64 = age.strip_suffix(" s ago")?.parse().ok()?;
+    let text = short(value);
+    let at = Instant::now().checked_sub(Duration::from_secs(seconds))?;
+    (!text.is_empty()).then_some(Battery { text, at })
+}
+
+/// The computer of `ADDRESS:PORT`, with or without words behind it: its port says nothing to people.
+fn address(text: &str) -> String {
+    let first = text.split_whitespace().next().unwrap_or_default();
+    let at: Option<SocketAddr> = first.parse().ok();
+    at.map_or_else(|| short(first), |at| at.ip().to_canonical().to_string())
 }
 
 /// The name of a program in the words of a status, as `a.js (JavaScript) for 3 s`.
@@ -383,6 +443,21 @@ mod tests {
         assert_eq!(short(""), "");
     }
 
+    #[test]
+    fn a_battery_and_an_address_are_read_and_rubbish_is_none() {
+        let told = battery("11.87 V, 3 s ago").unwrap();
+        assert_eq!(told.text, "11.87 V");
+        assert!(told.at.elapsed() >= Duration::from_secs(3));
+        for text in ["", "11.87 V", "11 V, x s ago", ", 3 s ago", "1 V, -1 s ago"] {
+            assert_eq!(battery(text), None, "{text}");
+        }
+        assert_eq!(battery(&format!("1 V, {} s ago", u64::MAX)), None);
+        assert_eq!(address("[::ffff:10.0.0.1]:5"), "10.0.0.1");
+        assert_eq!(address("10.0.0.1:5 is in control"), "10.0.0.1");
+        assert_eq!(address("a\u{1b}b"), "ab");
+        assert_eq!(address(""), "");
+    }
+
     struct Nowhere;
 
     impl Whereabouts for Nowhere {
@@ -399,7 +474,7 @@ mod tests {
             at: String::new(),
             whereabouts: Arc::new(Nowhere),
         }]);
-        let talk = Talk::new(&board, 0);
+        let talk = Talk::new(&board, 0, None);
         let is_asked = || board.with(0, |card| matches!(card.stop, Some(Stop::Asked(_))));
         board.stop(0);
         talk.stop(board.wanted_stop(0).unwrap());

@@ -139,6 +139,32 @@ fn a_robot_that_says_that_something_does_not_rest_is_not_at_rest() {
 }
 
 #[test]
+fn a_card_has_the_battery_and_who_commands_and_keeps_the_battery_with_its_age() {
+    let robots = [Fake::new(), Fake::new()];
+    let told = "battery 11.87 V, 2 s ago\ncontrol 10.0.0.1:5\ndebugger 10.0.0.2:6 is in control\n";
+    told.clone_into(&mut robots[0].state.more.lock().unwrap());
+    let page = page(
+        &[Some(robots[0].at), Some(robots[1].at)],
+        Arc::new(Everybody),
+    );
+    let mut viewer = Viewer::of(&page);
+    viewer.until("it is told", |cards| {
+        cards[0]["battery"]["text"] == "11.87 V"
+    });
+    assert_eq!(viewer.cards[0]["commander"], "10.0.0.1");
+    assert_eq!(viewer.cards[0]["debugger"], "10.0.0.2");
+    assert!(viewer.cards[0]["battery"]["ageMs"].as_u64().unwrap() >= 2000);
+    // One without a battery has none.
+    viewer.until("the other is there", |cards| cards[1]["reach"] == "there");
+    assert!(viewer.cards[1]["battery"].is_null());
+    robots[0].state.is_deaf.store(true, Ordering::Relaxed);
+    robots[0].hang_up();
+    viewer.until("it is gone", |cards| cards[0]["reach"] == "absent");
+    assert_eq!(viewer.cards[0]["battery"]["text"], "11.87 V");
+    assert!(viewer.cards[0]["commander"].is_null() && viewer.cards[0]["debugger"].is_null());
+}
+
+#[test]
 fn a_file_that_is_on_its_way_is_not_run_before_it_is_there() {
     let robot = Fake::new();
     let page = page(&[Some(robot.at)], Arc::new(Everybody));

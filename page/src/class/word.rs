@@ -2,7 +2,7 @@
 //!
 //! Owns their forms; `page/app/src/class/words.ts` has the other end. Pure.
 
-use super::board::{Board, Card, Reach, Sending, Stage, Stop};
+use super::board::{Battery, Board, Card, Commander, Reach, Sending, Stage, Stop};
 use super::member::OwnPage;
 use super::words::Refused;
 use crate::limits;
@@ -158,6 +158,9 @@ pub fn card(id: usize, card: &Card, locale: Locale) -> String {
         "runs": card.runs,
         "last": card.last,
         "error": card.error,
+        "battery": card.battery.as_ref().map(battery),
+        "commander": card.commander.as_ref().map(commander),
+        "debugger": card.debugger,
         "stop": card.stop.as_ref().map(stop),
         "sending": card.sending.as_ref().map(|one| sending(one, locale)),
     })
@@ -174,6 +177,20 @@ fn page(card: &Card) -> Option<String> {
         OwnPage::Port(port) => SocketAddr::new(at.ip(), port),
     };
     Some(format!("http://{address}/"))
+}
+
+/// With its age now: clocks of viewers are other ones.
+fn battery(battery: &Battery) -> Value {
+    let age = battery.at.elapsed().as_millis();
+    json!({ "text": battery.text, "ageMs": u64::try_from(age).unwrap_or(u64::MAX) })
+}
+
+/// An address; empty: this program.
+fn commander(who: &Commander) -> &str {
+    match who {
+        Commander::Own => "",
+        Commander::Other(address) => address,
+    }
 }
 
 fn stop(stop: &Stop) -> Value {
@@ -200,6 +217,7 @@ fn sending(one: &Sending, locale: Locale) -> Value {
 mod tests {
     use super::super::words::Why;
     use super::*;
+    use tokio::time::Instant;
 
     #[test]
     fn orders_are_read_and_rubbish_is_none() {
@@ -272,6 +290,12 @@ mod tests {
             runs: Some("a\"b".to_owned()),
             last: None,
             error: None,
+            battery: Some(Battery {
+                text: "11.8 V".to_owned(),
+                at: Instant::now(),
+            }),
+            commander: Some(Commander::Own),
+            debugger: Some("10.0.0.1".to_owned()),
             stop: Some(Stop::Rests(12)),
             sending: Some(Sending {
                 name: "a.py".to_owned(),
@@ -283,6 +307,12 @@ mod tests {
         let value: Value = serde_json::from_str(&card(3, &one, Locale::English)).unwrap();
         assert_eq!(value["page"], "http://192.168.77.1:8000/");
         assert_eq!((&value["id"], &value["runs"]), (&json!(3), &json!("a\"b")));
+        assert_eq!(value["battery"]["text"], "11.8 V");
+        assert!(value["battery"]["ageMs"].is_u64(), "{value}");
+        assert_eq!(
+            (&value["commander"], &value["debugger"]),
+            (&json!(""), &json!("10.0.0.1"))
+        );
         assert_eq!(value["stop"], json!({ "is": "rests", "ms": 12 }));
         assert_eq!(value["sending"]["is"], "failed");
         one.reach = Reach::Absent(Why::Closed);

@@ -3,17 +3,19 @@
 //! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
 
 use super::grade_args::GradeArgs;
+use super::page_args::MarksPageArgs;
 use super::platform::Platform;
 use super::recorded_args::RecordedArgs;
 use super::sandbox_args::SandboxArgs;
 use crate::{language, limits};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use lang_text::problem::Locale;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Options of `trik check`.
 #[derive(Args, Clone, Debug)]
+#[command(group = ArgGroup::new("table").args(["out", "is_served"]).multiple(true))]
 pub(crate) struct CheckArgs {
     /// Solutions: diagrams NAME.qrs, data-flow programs NAME.flow, programs NAME.js and NAME.py if a field is given, and
     /// directories of them.
@@ -85,6 +87,9 @@ pub(crate) struct CheckArgs {
     /// The table of a class.
     #[command(flatten)]
     pub grades: GradeArgs,
+    /// The page of marks.
+    #[command(flatten)]
+    pub marks: MarksPageArgs,
     /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,

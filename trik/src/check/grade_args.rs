@@ -21,17 +21,17 @@ pub(crate) struct GradeArgs {
     pub tasks: Option<PathBuf>,
     /// The names of all pupils, one in a line, as their folders or files are called: a pupil who has handed in nothing has
     /// a row too.
-    #[arg(long, value_name = "NAMES.txt", requires = "out")]
+    #[arg(long, value_name = "NAMES.txt", requires = "table")]
     pub pupils: Option<PathBuf>,
     /// What the points of a task, or of one of its fields, are multiplied with for the sum: maze=2 or maze/far=0.5
     /// [default: 1].
-    #[arg(long, value_name = "TASK[/FIELD]=NUMBER", value_delimiter = ',', requires = "out", value_parser = weight)]
+    #[arg(long, value_name = "TASK[/FIELD]=NUMBER", value_delimiter = ',', requires = "table", value_parser = weight)]
     pub weights: Vec<(String, f64)>,
     /// The sum with which a pupil has passed.
-    #[arg(long, value_name = "NUMBER", requires = "out", value_parser = finite)]
+    #[arg(long, value_name = "NUMBER", requires = "table", value_parser = finite)]
     pub pass_mark: Option<f64>,
     /// Where points come from.
-    #[arg(long, value_enum, default_value_t = Source::Auto, requires = "out")]
+    #[arg(long, value_enum, default_value_t = Source::Auto, requires = "table")]
     pub points: Source,
 }
 

@@ -6,6 +6,7 @@
 mod csv;
 mod html;
 mod ods;
+mod page;
 
 use super::class::{Column, Plan};
 use super::grade_args::{Form, GradeArgs, Source};
@@ -20,8 +21,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// One run as the table keeps it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Run {
+    /// Its number among all runs.
+    index: usize,
     pupil: usize,
     column: usize,
     solution: String,
@@ -39,7 +42,7 @@ struct Run {
 }
 
 /// The table.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Grades {
     locale: Locale,
     pupils: Vec<String>,
@@ -50,6 +53,8 @@ pub(super) struct Grades {
     runs: Vec<Run>,
     /// What is not judged, for people, and how much it is.
     left_out: (Vec<String>, usize),
+    /// Columns in which a run has points of its own.
+    pointed: BTreeSet<usize>,
     /// The run that counts for each pupil and column, row by row.
     cells: Vec<Option<usize>>,
 }
@@ -67,15 +72,17 @@ impl Grades {
             pass_mark: args.pass_mark,
             runs: Vec::new(),
             left_out: (plan.left_out, plan.left_out_count),
+            pointed: BTreeSet::new(),
         }
     }
 
-    /// Keeps what came of a run.
+    /// Keeps what came of a run. In whatever order they come, they stand in that of the runs.
     pub fn add(&mut self, index: usize, row: &Row, replay: Option<PathBuf>) {
         let Some(&(pupil, column)) = self.places.get(index) else {
             return;
         };
-        self.runs.push(Run {
+        let run = Run {
+            index,
             pupil,
             column,
             solution: harmless(&row.solution),
@@ -88,11 +95,15 @@ impl Grades {
             why: harmless(row.why()),
             replay,
             points: None,
-        });
+        };
+        let at = self.runs.partition_point(|other| other.index < index);
+        self.runs.insert(at, run);
     }
 
-    /// Works out points, once all runs are known. Of several solutions for a task the best one counts.
-    fn settle(&mut self) {
+    /// Works out points of the runs that are known. Of several solutions for a task the best one counts. True: a column has
+    /// points of its own that had none, so that other cells of it may have changed.
+    pub fn settle(&mut self) -> bool {
+        self.cells.fill(None);
         let pointed: BTreeSet<usize> = self
             .runs
             .iter()
@@ -119,6 +130,9 @@ impl Grades {
                 self.cells[cell] = Some(index);
             }
         }
+        let others_change = pointed != self.pointed;
+        self.pointed = pointed;
+        others_change
     }
 
     /// The run that counts for a pupil in a column.

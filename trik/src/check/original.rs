@@ -260,6 +260,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         display: None,
         results: None,
         grades: Default::default(),
+        marks: Default::default(),
         force: true,
         keep_going: false,
         marker_traces: false,

@@ -68,13 +68,15 @@ impl Shared {
     }
 }
 
-/// Does all runs in processes, and gives each result to `take` in order; stops early if that says so.
+/// Does all runs in processes, and gives each result to `take` in order; stops early if that says so. `hear` is told of each
+/// when it comes.
 ///
 /// # Errors
 /// What `take` says.
 pub(super) fn run(
     jobs: &[Job],
     args: &CheckArgs,
+    mut hear: impl FnMut(usize, &Row),
     mut take: impl FnMut(usize, Row) -> Result<(), Refusal>,
 ) -> Result<(), Refusal> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -90,7 +92,7 @@ pub(super) fn run(
             scope.spawn(move || feed(jobs, args, shared, &send));
         }
         drop(send);
-        let done = in_order(&shared, &results, &mut take);
+        let done = in_order(&shared, &results, &mut hear, &mut take);
         shared.lock().is_over = true;
         shared.has_moved.notify_all();
         // A thread that waits for room is let go.
@@ -113,10 +115,11 @@ pub(super) fn run_one(job: Job, args: &CheckArgs) -> Row {
     let mut found = None;
     let jobs = [job];
     // Nothing is refused here, and there is one result.
-    let _ = run(&jobs, &args, |_, row| {
+    let take = |_, row| {
         found = Some(row);
         Ok(())
-    });
+    };
+    let _ = run(&jobs, &args, |_, _| {}, take);
     found
         .unwrap_or_else(|| Row::broken(shown(jobs[0].judged(&args)), None, "it was not run".into()))
 }
@@ -124,11 +127,13 @@ pub(super) fn run_one(job: Job, args: &CheckArgs) -> Row {
 fn in_order(
     shared: &Shared,
     results: &Receiver<(usize, Row)>,
+    hear: &mut impl FnMut(usize, &Row),
     take: &mut impl FnMut(usize, Row) -> Result<(), Refusal>,
 ) -> Result<(), Refusal> {
     let mut early = std::collections::BTreeMap::new();
     let mut next = 0;
     for (index, row) in results {
+        hear(index, &row);
         early.insert(index, row);
         while let Some(row) = early.remove(&next) {
             take(next, row)?;

@@ -344,6 +344,37 @@ pub(super) fn no_folder(path: &str, locale: Locale) -> String {
     }
 }
 
+/// Where the marks are shown while they come.
+pub(super) fn page_is_served(link: &str, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("the marks as they come, in a browser: {link}"),
+        Locale::Russian => format!("оценки по мере проверки, в браузере: {link}"),
+    }
+}
+
+/// All is judged, and the page is still there.
+pub(super) fn page_stays(link: &str, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("all is judged; the page stays at {link}, Ctrl-C ends it"),
+        Locale::Russian => {
+            format!("всё проверено; страница остаётся: {link}, её завершит Ctrl-C")
+        }
+    }
+}
+
+/// A table that is too large for a page.
+pub(super) fn too_many_marks(count: usize, locale: Locale) -> String {
+    let max = crate::limits::MARKS_MAX;
+    match locale {
+        Locale::English => format!(
+            "--page shows {max} marks at most, and these are {count}: judge fewer pupils or tasks at once, or without --page"
+        ),
+        Locale::Russian => format!(
+            "--page показывает не больше {max} оценок, а здесь {count}: проверьте меньше учеников или заданий за раз, или без --page"
+        ),
+    }
+}
+
 /// A class without pupils or without tasks.
 pub(super) fn nobody(locale: Locale) -> &'static str {
     choose(

@@ -136,12 +136,19 @@ mod tests {
 
     #[test]
     fn words_of_a_robot_are_the_same_on_both_sides() {
-        use page::class::{EXPLAINED, REFUSALS, STARTED};
+        use page::class::{BATTERY, COMMANDER, DEBUGGER, EXPLAINED, REFUSALS, STARTED};
         use trikd::protocol::news;
         assert_eq!(EXPLAINED, trikd::program::rest::EXPLAINED);
         let [upload, pairing] = REFUSALS;
         assert_eq!(upload, news::UPLOAD_FAILED);
         assert!(news::NOT_PAIRED.starts_with(pairing), "{pairing}");
+        let at = SocketAddr::from(([10, 0, 0, 1], 5));
+        assert_eq!(
+            news::battery("11.8 V", 3),
+            format!("{BATTERY}11.8 V, 3 s ago\n")
+        );
+        assert_eq!(news::commands(at), format!("{COMMANDER}10.0.0.1:5\n"));
+        assert!(news::debugs("10.0.0.1:5").starts_with(&format!("{DEBUGGER}10.0.0.1:5 ")));
         assert_eq!(news::started("a.js"), format!("a.js{STARTED}"));
     }
 }

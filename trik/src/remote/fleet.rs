@@ -208,7 +208,8 @@ pub(crate) fn status(args: &FleetArgs) -> u8 {
             Some(text) => {
                 let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
                 if news::status(&text).runs.is_some() {
-                    lines.extend(debugger(&mut link));
+                    let told = debugger(&mut link, &lines);
+                    lines.extend(told);
                 }
                 let lines = lines.iter().map(|line| format!("{member}: {line}\n"));
                 Ok((0, lines.collect()))
@@ -220,8 +221,9 @@ pub(crate) fn status(args: &FleetArgs) -> u8 {
     })
 }
 
-/// Where a program is stopped by a debugger, and who is in control of that. A robot that does not answer has none.
-fn debugger(link: &mut Link) -> Vec<String> {
+/// Where a program is stopped by a debugger, and who is in control of that, if its status has not told that. A robot that does
+/// not answer has none.
+fn debugger(link: &mut Link, status: &[String]) -> Vec<String> {
     let mut control = None;
     let Ok(answer) = look(link, 1, &mut control) else {
         return Vec::new();
@@ -231,7 +233,8 @@ fn debugger(link: &mut Link) -> Vec<String> {
         .and_then(|told| stops::in_one_line(&told))
         .into_iter()
         .collect();
-    lines.extend(control.map(|holder| format!("debugger {}", news::in_control(&holder))));
+    let control = control.map(|holder| news::debugs(&holder).trim_end().to_owned());
+    lines.extend(control.filter(|line| !status.contains(line)));
     lines
 }
 

@@ -68,6 +68,15 @@ pub(crate) fn signals() -> nix::Result<SignalFd> {
     SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
 }
 
+/// Lets the signals in again that a process has inherited as kept from it.
+///
+/// # Errors
+/// Those of the system.
+pub(crate) fn let_in() -> nix::Result<()> {
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_unblock()
+}
+
 fn start(arguments: &[OsString]) -> Result<Tree, Error> {
     Tree::start("trikfs", arguments).map_err(|error| Error::system("starting the tree", error))
 }

@@ -17,6 +17,13 @@ pub struct Holder {
     peer: SocketAddr,
 }
 
+impl Holder {
+    /// Where it is.
+    pub fn peer(&self) -> SocketAddr {
+        self.peer
+    }
+}
+
 /// An order, by the client that gave it and what it calls it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct OrderId {

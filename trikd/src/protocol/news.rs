@@ -72,6 +72,21 @@ pub fn in_control(who: &str) -> String {
     format!("{who} is in control")
 }
 
+/// The line of a status about the battery: its value with its unit, and how long ago that was.
+pub fn battery(value: &str, seconds: u64) -> String {
+    format!("battery {value}, {seconds} s ago\n")
+}
+
+/// The line of a status about the client that has started or stopped a program last, while it is connected.
+pub fn commands(who: std::net::SocketAddr) -> String {
+    format!("control {who}\n")
+}
+
+/// The line of a status about the client that controls the debugger.
+pub fn debugs(who: &str) -> String {
+    format!("debugger {}\n", in_control(who))
+}
+
 /// What a robot says of a diagram that asks a person while nobody is there, after `info: `.
 pub fn nobody_answers(name: &str) -> String {
     format!("{name} asks a person, and nobody is there: trik run {name} in a terminal would answer")

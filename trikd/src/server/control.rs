@@ -6,6 +6,7 @@ mod debug;
 use super::Guest;
 use super::recordings::{Recordings, Sending};
 use crate::access::Access;
+use crate::battery::Battery;
 use crate::clients::{Client, Clients, Watching};
 use crate::connection::{self, Handler, Held, VERSION};
 use crate::feedback::{Feedback, Moment};
@@ -43,6 +44,8 @@ pub struct Control {
     pub config_version: String,
     /// What has happened, and what happens.
     pub recordings: Rc<Recordings>,
+    /// What the battery has.
+    pub battery: Rc<Battery>,
 }
 
 /// One connection.
@@ -101,7 +104,9 @@ impl Session {
     async fn status(&self) {
         let (answer, told) = oneshot::channel();
         self.control.programs.send(Command::Ask(answer)).await;
-        if let Ok(text) = told.await {
+        if let Ok(mut text) = told.await {
+            text.push_str(&self.control.battery.line());
+            text.push_str(&self.control.clients.describe_control());
             self.client
                 .outbox
                 .send(format!("status: {text}").as_bytes());

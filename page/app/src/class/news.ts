@@ -24,6 +24,14 @@ export interface Sending {
   why: string | null;
 }
 
+/** What the battery of a robot had. */
+export interface Battery {
+  /** The value with its unit. */
+  text: string;
+  /** How long ago that was when it was told. */
+  ageMs: number;
+}
+
 /** What is known of a robot. */
 export interface Card {
   reach: 'unknown' | 'there' | 'absent';
@@ -33,6 +41,12 @@ export interface Card {
   runs: string | null;
   last: string | null;
   error: string | null;
+  /** Stays when the robot is gone. */
+  battery: Battery | null;
+  /** The computer that has started or stopped a program last; empty: the server of this page. */
+  commander: string | null;
+  /** The computer that controls the debugger. */
+  debugger: string | null;
   stop: Stop | null;
   sending: Sending | null;
 }
@@ -52,6 +66,9 @@ export const BLANK: Card = {
   runs: null,
   last: null,
   error: null,
+  battery: null,
+  commander: null,
+  debugger: null,
   stop: null,
   sending: null,
 };

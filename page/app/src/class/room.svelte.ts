@@ -7,6 +7,9 @@ import { PROGRAM_BYTES_MAX } from '../limits';
 import { isName } from '../robot/program.svelte';
 import { BLANK, type Card, type News, type Order, type Title } from './news';
 
+/** A robot is asked every six seconds, and tells what it knew when it was asked before. */
+const OLD_MS = 15_000;
+
 export class Room {
   name = $state('');
   titles = $state.raw<Title[]>([]);
@@ -17,6 +20,10 @@ export class Room {
   /** This computer commands. */
   mayDrive = $state(false);
   refusal = $state('');
+  /** The clock of what is shown, which goes on once a second. */
+  now_ms = $state(Date.now());
+  /** When each card was told. */
+  #told_ms: number[] = [];
   /** Why the file was not taken. */
   unsent = $state<'' | 'name' | 'size' | 'offline' | 'unread' | 'stopped'>('');
   /** A stop was pressed that the server has not got. */
@@ -44,21 +51,33 @@ export class Room {
         this.mayDrive = news.drives;
         this.titles = news.robots;
         this.cards = news.robots.map(() => BLANK);
+        this.#told_ms = news.robots.map(() => Date.now());
         // A server that is back has the same robots.
         if (!isSame) this.chosen = new Set(news.robots.keys());
         break;
       }
       case 'robot': {
         const { id, ...card } = news;
-        if (id < this.cards.length) this.cards = this.cards.with(id, card);
+        if (id >= this.cards.length) break;
+        this.cards = this.cards.with(id, card);
+        this.#told_ms[id] = this.now_ms = Date.now();
         break;
       }
       case 'refused':
         this.refusal = news.why;
         break;
       case 'beat':
+        this.now_ms = Date.now();
         break;
     }
+  }
+
+  /** How old the battery of a robot is, in seconds; nothing: it has none, or that is as new as it comes. */
+  batteryAge_s(id: number): number | undefined {
+    const age_ms = this.cards[id]?.battery?.ageMs;
+    if (age_ms === undefined) return undefined;
+    const now_ms = age_ms + Math.max(this.now_ms - (this.#told_ms[id] ?? this.now_ms), 0);
+    return now_ms >= OLD_MS ? Math.floor(now_ms / 1000) : undefined;
   }
 
   /** The chosen ones in their order. */

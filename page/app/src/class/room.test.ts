@@ -1,4 +1,5 @@
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { BLANK } from './news';
 import { Room } from './room.svelte';
 
 /** What went to the server. */
@@ -98,4 +99,19 @@ test('a stop that is not sent is not taken for one, until one is', () => {
   one.stopChosen();
   expect(one.hasMissedStop).toBe(false);
   expect(sent).toEqual(['{"do":"stop","robots":[0,1]}']);
+});
+
+test('a battery that is old says so, also when nothing more comes of its robot', () => {
+  const one = room();
+  const card = { is: 'robot', id: 0, ...BLANK, reach: 'there' };
+  socket.onmessage?.({ data: JSON.stringify({ ...card, battery: { text: '11.8 V', ageMs: 6000 } }) });
+  expect([one.batteryAge_s(0), one.batteryAge_s(1)]).toEqual([undefined, undefined]);
+  vi.advanceTimersByTime(3000);
+  socket.onmessage?.({ data: '{"is":"beat"}' });
+  expect(one.batteryAge_s(0)).toBeUndefined();
+  vi.advanceTimersByTime(3000);
+  socket.onmessage?.({ data: '{"is":"beat"}' });
+  vi.advanceTimersByTime(3500);
+  socket.onmessage?.({ data: '{"is":"beat"}' });
+  expect(one.batteryAge_s(0)).toBe(15);
 });

@@ -30,6 +30,8 @@ pub struct FakeState {
     pub is_deaf: AtomicBool,
     /// What it says of a stop; empty: everything rests.
     pub unrest: Mutex<String>,
+    /// Further lines of its status.
+    pub more: Mutex<String>,
     connections: Mutex<Vec<TcpStream>>,
 }
 
@@ -97,7 +99,10 @@ impl FakeState {
                 true => "none".to_owned(),
                 false => format!("{runs} (JavaScript) for 1 s"),
             };
-            return vec![format!("status: program {line}\nprograms 1 started\n")];
+            let more = self.more.lock().unwrap();
+            return vec![format!(
+                "status: program {line}\nprograms 1 started\n{more}"
+            )];
         }
         if text == "version" {
             return vec!["version: 3.1.4".to_owned()];

@@ -85,3 +85,48 @@ fn the_best_of_several_counts_and_what_was_not_judged_has_no_points() {
     let page = html::write(&grades, Path::new("x.html"));
     assert!(page.contains("<th>=1+1</th>") && page.contains("<small>missing</small>"));
 }
+
+#[test]
+fn a_table_that_fills_in_any_order_is_the_one_of_the_end() {
+    let rows = [
+        (0, 0, row(Verdict::Wrong, 0.0, "well")),
+        (0, 0, row(Verdict::Accomplished, 0.0, "well")),
+        (1, 0, row(Verdict::Accomplished, 0.0, "points: 30")),
+        (1, 1, row(Verdict::NotRun, 0.0, "")),
+    ];
+    let whole = grades(Source::Auto, &rows);
+    let mut filling = Grades {
+        runs: Vec::new(),
+        ..whole.clone()
+    };
+    filling.pointed.clear();
+    let mut waiting = filling.runs_of_cells();
+    assert_eq!(waiting, [2, 0, 1, 1]);
+    let mut changes = Vec::new();
+    for index in [1, 0, 3, 2] {
+        filling.add(index, &rows[index].2, None);
+        changes.push(filling.settle());
+        let (_, cell) = filling.place(index).expect("a place");
+        waiting[cell] -= 1;
+        if index == 1 {
+            // What has no points yet counts what is accomplished.
+            let row = filling.shown(0, &waiting);
+            assert_eq!((row.sum, row.passed), (2.0, Some(false)));
+            assert_eq!(row.cells[0].waiting, 1);
+            assert_eq!(row.cells[0].mark.as_ref().map(|mark| mark.run), Some(1));
+        }
+    }
+    // Only the points that came last have changed other cells.
+    assert_eq!(changes, [false, false, false, true]);
+    assert_eq!(csv::write(&filling), csv::write(&whole));
+    let row = filling.shown(0, &waiting);
+    assert_eq!((row.sum, row.cells[0].waiting), (0.0, 0));
+    let mark = filling
+        .shown(1, &waiting)
+        .cells
+        .remove(1)
+        .mark
+        .expect("a mark");
+    assert_eq!((mark.points, mark.ms), (None, None));
+    assert_eq!(mark.verdict.english, "could not be run");
+}
