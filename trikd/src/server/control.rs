@@ -183,6 +183,7 @@ impl Handler for Session {
         match request {
             // What is unknown has no answer, as on the original robots.
             Request::Keepalive | Request::Unknown => {}
+            Request::Malformed(why) => self.error(&why.to_string()),
             Request::Version => self.client.outbox.send(VERSION),
             Request::ConfigVersion => {
                 let answer = format!("configVersion: {}", self.control.config_version);

@@ -425,6 +425,7 @@ fn what_is_wrong_changes_nothing_and_says_where() {
     }
     for unknown in ["patch:count.qrs", "patch:maybe:count.qrs", "patch:"] {
         client.send(unknown);
+        client.until("error: this request is written patch:end:NAME or patch:refuse:NAME");
     }
     let before = printed(&mut client);
     assert_eq!(printed(&mut client), before + 1);
