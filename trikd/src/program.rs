@@ -2,7 +2,7 @@
 //!
 //! Owns what the running program may do next, and its end. `queue` is what is asked for, `child` is one process with its
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
-//! hears of ends, `output` measures what it says, `says` shows it, `live` changes a diagram that runs and watches it, `boot`
+//! hears of ends, `output` measures what it says, `says` shows it, `live` changes a diagram that runs and watches it, `memory` whether that was short, `boot`
 //! runs a program at the start.
 
 // A request, a message or a command that is forgotten must not pass in silence.
@@ -13,6 +13,7 @@ pub mod child;
 pub mod kill;
 pub mod launch;
 mod live;
+mod memory;
 pub mod output;
 pub mod python;
 pub mod queue;
@@ -33,6 +34,7 @@ use child::{Child, Event, Language, Owner};
 use journal::standard::Level;
 use journal::write::Story;
 use kill::{freeze, group, sweep};
+use memory::Kills;
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::{Manner, Meter};
@@ -72,6 +74,8 @@ struct Current {
     /// Orders to its debugger that it has not answered yet.
     orders: VecDeque<OrderId>,
     ended: Option<(Ended, Instant)>,
+    /// How often the system had killed for want of memory when it began.
+    kills: Kills,
 }
 
 /// Why a program is ended.
@@ -268,6 +272,7 @@ impl Supervisor {
         first: ToProgram<'_>,
     ) {
         let around = &self.around;
+        let kills = Kills::now();
         let started = child::start(
             &around.settings,
             around.owner.as_ref(),
@@ -327,6 +332,7 @@ impl Supervisor {
             web: Vec::new(),
             orders: VecDeque::new(),
             ended: None,
+            kills,
         });
         // Together with its beginning, so that a recording has that.
         self.send_watch();
@@ -407,6 +413,7 @@ impl Supervisor {
             FromProgram::Debug { client, json } => self.hear_debugger(client, json),
             FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
             FromProgram::Question { number, json } => self.question(number, json),
+            FromProgram::Stopped(place) => self.note_place(place),
         }
     }
 
@@ -468,6 +475,7 @@ impl Supervisor {
         self.end_debugger(&mut current);
         self.report_end(&mut current, &cause);
         self.around.programs.shown.borrow_mut().text = None;
+        self.note_place(None);
         self.around.mailbox.forget_kept();
     }
 
@@ -524,19 +532,6 @@ impl Supervisor {
         Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
     }
 
-    fn report_rest(&self, rested: Result<(), rest::Failure>, rest_us: u128) {
-        let mut shown = self.around.programs.shown.borrow_mut();
-        if shown.rests_us.len() >= limits::RESTS_SHOWN {
-            shown.rests_us.pop_front();
-        }
-        shown.rests_us.push_back(rest_us);
-        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
-        if let Err(why) = rested {
-            tracing::error!(target: log::TREE, "{why}");
-            self.broadcast(&format!("error: {why}"));
-        }
-    }
-
     fn report_end(&self, current: &mut Current, cause: &Cause) {
         let now = Instant::now();
         self.report_dropped(current.meter.take_dropped(now, true));
@@ -549,6 +544,9 @@ impl Supervisor {
             Cause::Exited(Ended::Code(0)) if current.has_reported_error => End::Failed,
             Cause::Exited(Ended::Code(0)) => End::Well,
             Cause::Exited(Ended::Code(code)) => End::Code(*code),
+            Cause::Exited(Ended::Signal(libc::SIGKILL)) if current.kills.have_grown() => {
+                End::Starved
+            }
             Cause::Exited(Ended::Signal(signal)) => {
                 End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }
