@@ -34,7 +34,6 @@ use child::{Child, Event, Language, Owner};
 use journal::standard::Level;
 use journal::write::Story;
 use kill::{freeze, group, sweep};
-use memory::Kills;
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::{Manner, Meter};
@@ -74,8 +73,6 @@ struct Current {
     /// Orders to its debugger that it has not answered yet.
     orders: VecDeque<OrderId>,
     ended: Option<(Ended, Instant)>,
-    /// How often the system had killed for want of memory when it began.
-    kills: Kills,
 }
 
 /// Why a program is ended.
@@ -272,7 +269,6 @@ impl Supervisor {
         first: ToProgram<'_>,
     ) {
         let around = &self.around;
-        let kills = Kills::now();
         let started = child::start(
             &around.settings,
             around.owner.as_ref(),
@@ -332,7 +328,6 @@ impl Supervisor {
             web: Vec::new(),
             orders: VecDeque::new(),
             ended: None,
-            kills,
         });
         // Together with its beginning, so that a recording has that.
         self.send_watch();
@@ -544,7 +539,7 @@ impl Supervisor {
             Cause::Exited(Ended::Code(0)) if current.has_reported_error => End::Failed,
             Cause::Exited(Ended::Code(0)) => End::Well,
             Cause::Exited(Ended::Code(code)) => End::Code(*code),
-            Cause::Exited(Ended::Signal(libc::SIGKILL)) if current.kills.have_grown() => {
+            Cause::Exited(Ended::Signal(libc::SIGKILL)) if current.child.kills.have_grown() => {
                 End::Starved
             }
             Cause::Exited(Ended::Signal(signal)) => {

@@ -4,6 +4,8 @@
 mod coefficient;
 /// Frames that an editor sends, and some that none does.
 mod dap;
+/// Its breakpoints over a restart, and what it writes into its launch.
+mod dap_told;
 /// Data-flow programs in a simulated world.
 mod flow;
 /// Programs in Python under debugpy.
@@ -172,6 +174,19 @@ fn a_file_is_taken_again_and_the_program_goes_on() {
 }
 
 #[test]
+fn an_empty_condition_is_refused_before_a_robot_is_asked() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    for condition in ["", " "] {
+        let words = ["break", "4", "--if", condition, "--file", "count.qrs"];
+        let refused = debug(&board, &words, "");
+        assert_eq!(refused.code(), 2, "{}", refused.stderr);
+        let why = "--if needs a condition, such as --if 'n > 3'";
+        assert!(refused.stderr.contains(why), "{}", refused.stderr);
+    }
+}
+
+#[test]
 fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
     let Some(robot) = Reachable::new() else {
         return;
@@ -213,10 +228,6 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
         (
             &["break", "5", "--if", "n >", "--file", &file],
             "the condition: 1:3 ",
-        ),
-        (
-            &["break", "5", "--if", " ", "--file", &file],
-            "--if needs a condition, such as --if 'n > 3'",
         ),
     ] {
         let refused = trik(words);
