@@ -30,7 +30,7 @@ use std::collections::VecDeque;
 
 use self::dynamics::Dynamics;
 
-use lang_diagram::brick::Brick as _;
+use lang_diagram::brick::{Answer, Brick as _, Question};
 use lang_diagram::devices;
 use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::Port;
@@ -79,6 +79,12 @@ impl Setup {
     }
 }
 
+/// Somebody who answers when a program asks and no answers are left.
+pub trait Person: std::fmt::Debug + Send {
+    /// What is answered to a question, which is asked again and again until then.
+    fn ask(&mut self, question: Question<'_>) -> Answer;
+}
+
 /// What of a robot's devices was changed from outside its program.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Change {
@@ -101,6 +107,7 @@ pub struct Arena {
     solids: Solids,
     robots: Vec<Robot>,
     answers: VecDeque<String>,
+    person: Option<Box<dyn Person>>,
     is_watched: bool,
     is_unmarked: bool,
     /// What rules have changed of things as they are drawn.
@@ -145,6 +152,7 @@ impl Arena {
             now: 0,
             robots,
             answers: setup.answers,
+            person: None,
             is_watched: setup.is_watched,
             is_unmarked: setup.is_unmarked,
             graphics: graphic::Graphics::default(),
@@ -154,6 +162,11 @@ impl Arena {
             window: floor::Window::default(),
             scratch: Outline::default(),
         }
+    }
+
+    /// From now on this person answers when a program asks and no answers are left.
+    pub fn set_person(&mut self, person: Box<dyn Person>) {
+        self.person = Some(person);
     }
 
     /// One tick: 10 ms of the world. A program's step at the same time comes after it.

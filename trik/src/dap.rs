@@ -1,11 +1,12 @@
 //! `trik dap`: programs of blocks, in Python and in JavaScript in the debugger of an editor, by the Debug Adapter Protocol.
 //!
 //! Owns how a client comes: over standard input and output, or over TCP, one after the other, and `owner` whose it is there. `greeting` begins a talk, `session` is one, `client`
-//! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
+//! its frames, `launch` what it is about, `keys` how that is written, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
 //! `debug`; a program in Python is debugged by debugpy, and `python` stands between that and the client; `script` is what JavaScript can.
 
 mod client;
 mod greeting;
+mod keys;
 mod launch;
 mod owner;
 mod points;

@@ -1,12 +1,14 @@
 //! `trik debug`: a debugger for diagrams, forwards and backwards, and for data-flow programs, in a terminal.
 //!
 //! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process, one in the network is
-//! in `remote::debugged`; `terminal` talks to a person, `stops` says where it is stopped, `listing` is the program as text,
-//! `words` what can be typed, `report` what comes back. The debuggers themselves are in `lang_diagram::debug` and
-//! `lang_dataflow::debug`.
+//! in `remote::debugged`; `terminal` talks to a person, `signals` has Ctrl-C, `asking` the program's questions to a person,
+//! `stops` says where it is stopped, `listing` is the program as text, `words` what can be typed, `report` what comes back.
+//! The debuggers themselves are in `lang_diagram::debug` and `lang_dataflow::debug`.
 
+pub(crate) mod asking;
 pub(crate) mod listing;
 pub(crate) mod report;
+mod signals;
 pub(crate) mod stage;
 pub(crate) mod stops;
 pub(crate) mod target;
@@ -19,6 +21,7 @@ use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::remote;
 use crate::remote::debugged::{Debugged, Runs};
+use asking::Listener;
 use clap::{Args, FromArgMatches};
 use lang_diagram::debug::order::Order;
 use lang_text::problem::Locale;
@@ -154,6 +157,7 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
         // A person types at a program that is stopped.
         target.order(&Order::Pause).map_err(unreachable)?;
     }
+    target.attend(Listener::Person);
     let source = Source {
         file: args.file.clone(),
         diagram: args.world.diagram.clone(),
@@ -173,6 +177,11 @@ pub(crate) fn talk(staged: &Staged, speed: Option<f64>, start: Start) -> Result<
     say(&staged.strange);
     let listing = listing(staged);
     let mut stage = Stage::of(staged, start).at_speed(speed);
+    match start {
+        Start::Stopped => stage.attend(Listener::Person),
+        // It does what it has done when it was judged.
+        Start::Running => {}
+    }
     let source = Source {
         file: staged.file.clone(),
         diagram: staged.diagram.clone(),

@@ -11,7 +11,7 @@ pub(crate) mod fleet;
 mod link;
 pub(crate) mod live;
 mod output;
-mod person;
+pub(crate) mod person;
 pub(crate) mod recorded;
 mod relay;
 pub(crate) mod roster;

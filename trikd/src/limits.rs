@@ -58,6 +58,8 @@ pub const LOG_LINES_PER_MINUTE: f32 = 20.0;
 pub const LOG_VERBOSE_LINES_PER_SECOND: f32 = 50.0;
 /// Characters of one line of the log.
 pub const LOG_LINE_CHARACTERS: usize = 400;
+/// Bytes of the name of a file in which a program is stopped.
+pub const PLACE_BYTES: usize = 120;
 /// Bytes of a request that the log shows to who asks for `debug`.
 pub const LOG_REQUEST_BYTES: usize = 80;
 /// Beeps and lights that may wait.

@@ -2,7 +2,7 @@
 //!
 //! Owns what the running program may do next, and its end. `queue` is what is asked for, `child` is one process with its
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
-//! hears of ends, `output` measures what it says, `says` shows it, `live` changes a diagram that runs and watches it, `boot`
+//! hears of ends, `output` measures what it says, `says` shows it, `live` changes a diagram that runs and watches it, `memory` whether that was short, `boot`
 //! runs a program at the start.
 
 // A request, a message or a command that is forgotten must not pass in silence.
@@ -13,6 +13,7 @@ pub mod child;
 pub mod kill;
 pub mod launch;
 mod live;
+mod memory;
 pub mod output;
 pub mod python;
 pub mod queue;
@@ -403,6 +404,7 @@ impl Supervisor {
             FromProgram::Debug { client, json } => self.hear_debugger(client, json),
             FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
             FromProgram::Question { number, json } => self.question(number, json),
+            FromProgram::Stopped(place) => self.note_place(place),
         }
     }
 
@@ -464,6 +466,7 @@ impl Supervisor {
         self.end_debugger(&mut current);
         self.report_end(&mut current, &cause);
         self.around.programs.shown.borrow_mut().text = None;
+        self.note_place(None);
         self.around.mailbox.forget_kept();
     }
 
@@ -520,19 +523,6 @@ impl Supervisor {
         Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
     }
 
-    fn report_rest(&self, rested: Result<(), rest::Failure>, rest_us: u128) {
-        let mut shown = self.around.programs.shown.borrow_mut();
-        if shown.rests_us.len() >= limits::RESTS_SHOWN {
-            shown.rests_us.pop_front();
-        }
-        shown.rests_us.push_back(rest_us);
-        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
-        if let Err(why) = rested {
-            tracing::error!(target: log::TREE, "{why}");
-            self.broadcast(&format!("error: {why}"));
-        }
-    }
-
     fn report_end(&self, current: &mut Current, cause: &Cause) {
         let now = Instant::now();
         self.report_dropped(current.meter.take_dropped(now, true));
@@ -545,6 +535,9 @@ impl Supervisor {
             Cause::Exited(Ended::Code(0)) if current.has_reported_error => End::Failed,
             Cause::Exited(Ended::Code(0)) => End::Well,
             Cause::Exited(Ended::Code(code)) => End::Code(*code),
+            Cause::Exited(Ended::Signal(libc::SIGKILL)) if current.child.kills.have_grown() => {
+                End::Starved
+            }
             Cause::Exited(Ended::Signal(signal)) => {
                 End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }

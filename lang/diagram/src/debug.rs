@@ -209,9 +209,9 @@ impl Debugger {
         Ok(())
     }
 
-    /// A thread is no longer to be held; the caller also calls [`Machine::release`].
-    pub fn let_thread(&mut self, name: &str) {
-        self.held_alone.remove(name);
+    /// A thread is no longer to be held; false if it was not. The caller also calls [`Machine::release`].
+    pub fn let_thread(&mut self, name: &str) -> bool {
+        self.held_alone.remove(name)
     }
 
     /// The threads that are to be held alone.

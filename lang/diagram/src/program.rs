@@ -542,6 +542,13 @@ impl Program {
         }
     }
 
+    /// Names of the threads that it may begin, but for those that are named when they begin.
+    pub fn thread_names(&self) -> impl Iterator<Item = &str> {
+        let branches = self.forks.iter().flat_map(|fork| &fork.branches);
+        let named = branches.filter_map(|(name, _)| name.as_deref());
+        std::iter::once("main").chain(named)
+    }
+
     /// What a node remembers.
     pub(crate) fn remembers(&self, node: Node) -> Memory {
         match self.ops[node as usize] {

@@ -401,6 +401,20 @@ pub(super) fn only_looked(function: &str) -> Words {
     )
 }
 
+pub(super) fn open_brace() -> Words {
+    Words::new(
+        "This brace is not closed: write } behind the expression, as in {n}",
+        "Эта скобка не закрыта: после выражения нужна }, например {n}",
+    )
+}
+
+pub(super) fn empty_braces() -> Words {
+    Words::new(
+        "There is nothing between these braces: write an expression, as in {n}",
+        "Между этими скобками пусто: напишите выражение, например {n}",
+    )
+}
+
 pub(super) fn assigns() -> Words {
     Words::new(
         "An expression that is only looked at cannot assign; == compares",

@@ -283,10 +283,11 @@ impl Brick for Handle<'_> {
         self.arena.robots[self.index].mail.pop_front()
     }
 
-    fn ask(&mut self, _question: Question<'_>) -> Answer {
-        self.arena
-            .answers
-            .pop_front()
-            .map_or(Answer::Cancelled, Answer::Text)
+    fn ask(&mut self, question: Question<'_>) -> Answer {
+        match (self.arena.answers.pop_front(), &mut self.arena.person) {
+            (Some(text), _) => Answer::Text(text),
+            (None, Some(person)) => person.ask(question),
+            (None, None) => Answer::Cancelled,
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::program::Program;
 use super::run::{Failure, Outcome, Run, Settings, Verdict};
 use super::task::Task;
 use super::words;
-use crate::arena::{Arena, Gamepad, Setup};
+use crate::arena::{Arena, Gamepad, Person, Setup};
 use lang_constraint::Entry;
 use lang_diagram::brick::Brick;
 use lang_diagram::machine::{STEP_MS, Status};
@@ -154,6 +154,11 @@ impl<'a> Trial<'a> {
         let now = self.now;
         self.run
             .with_robot(now, &mut self.arena, &mut |robot| act(now, robot));
+    }
+
+    /// From now on this person answers when the program asks and no answers are left.
+    pub fn set_person(&mut self, person: Box<dyn Person>) {
+        self.arena.set_person(person);
     }
 
     /// What was said so far by rules and program.

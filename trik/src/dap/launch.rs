@@ -3,6 +3,7 @@
 //! Owns the keys of `launch` and `attach`, and how a program begins, again and again if the editor restarts it.
 
 use super::client::{Client, Refused, Request};
+use super::keys;
 use super::points::Points;
 use super::session::{After, Begins, Session};
 use crate::check::Start;
@@ -35,6 +36,16 @@ pub(super) struct Launch {
     pub is_joining: bool,
 }
 
+/// What goes with no robot, as on a command line.
+const OF_WORLDS: [&str; 5] = ["field", "task", "inputs", "gamepad", "speed"];
+
+fn is_there(request: &Request, name: &str) -> bool {
+    match request.arguments.get(name) {
+        None | Some(Value::Null) => false,
+        Some(_) => true,
+    }
+}
+
 /// What becomes of a session.
 enum Next {
     /// The talk is over.
@@ -48,8 +59,14 @@ enum Next {
 impl Launch {
     /// As the client says; a refusal is told.
     pub fn read(request: &Request, client: &mut Client) -> Option<Self> {
-        match Self::understood(request) {
-            Ok(launch) => Some(launch),
+        let known = keys::strangers(request, &keys::OF_BLOCKS);
+        match known.and_then(|strangers| Ok((strangers, Self::understood(request)?))) {
+            Ok((strangers, launch)) => {
+                if let Some(told) = keys::of_strangers(&strangers, &keys::OF_BLOCKS) {
+                    important(client, &format!("trik dap: {told}"));
+                }
+                Some(launch)
+            }
             Err(why) => {
                 client.answer(request, Err(why));
                 None
@@ -67,6 +84,13 @@ impl Launch {
             None => is_joining.then(the_one),
         };
         let robot = robot.transpose().map_err(|why| Refused(why.to_string()))?;
+        if let Some(name) = OF_WORLDS.iter().find(|name| is_there(request, name))
+            && robot.is_some()
+        {
+            return Err(Refused(format!(
+                "\"{name}\" is for a simulated world: a robot has its own"
+            )));
+        }
         let path = |name| request.text(name).map(PathBuf::from);
         let seed = request
             .number("seed")
@@ -82,11 +106,9 @@ impl Launch {
                 task: path("task"),
                 inputs: path("inputs"),
                 gamepad: path("gamepad"),
-                time_limit: time_limit
-                    .filter(|seconds| (0.01..=3600.0).contains(seconds))
-                    .unwrap_or(600.0),
+                time_limit: time_limit.unwrap_or(600.0),
                 seed: seed.unwrap_or(1),
-                speed: speed.filter(|speed| (0.01..=1000.0).contains(speed)),
+                speed,
                 language: locale.and_then(Result::ok).unwrap_or_default(),
             },
             stops_on_entry: request.truth("stopOnEntry"),

@@ -27,14 +27,21 @@ pub(super) enum Kind {
 #[derive(Clone, Debug)]
 struct Set {
     kind: Kind,
+    /// What the client calls it, as long as it wants it; several blocks of one name are one for it.
+    id: u64,
+    /// What the program that runs calls it.
     number: u64,
     point: Breakpoint,
+    /// Why the program that runs does not have it.
+    refused: Option<String>,
 }
 
 /// All that are set.
 #[derive(Debug, Default)]
 pub(super) struct Points {
     set: Vec<Set>,
+    /// How many a client has been told of.
+    ids: u64,
     /// Whether errors in blocks stop the program.
     pub stops_at_errors: bool,
 }
@@ -53,6 +60,8 @@ fn text(value: &Value, name: &str) -> Box<str> {
 enum Unset {
     /// What is said of hits is no number of them.
     Hits,
+    /// What is said of one of these is blank.
+    Blank(&'static str),
     /// There is no block where it should be.
     Nowhere(Kind),
     /// The debugger refuses it.
@@ -62,7 +71,10 @@ enum Unset {
 impl fmt::Display for Unset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Hits => "a number of hits is wanted, such as 5, >= 5 or > 5",
+            Self::Hits => "a number of hits from 1 on is wanted, such as 5, >= 5 or > 5",
+            Self::Blank(what) => {
+                return write!(f, "the {what} is blank: write one, or leave it out");
+            }
             Self::Nowhere(Kind::Line) => "this line has no block",
             Self::Nowhere(Kind::Name) => "there is no subprogram and no block of this name",
             Self::Nowhere(Kind::Id) => "there is no block with this id",
@@ -88,10 +100,27 @@ fn hits(text: &str) -> Result<u32, Unset> {
         "" => Ok(0),
         digits => {
             let hits: Result<u32, _> = digits.parse();
-            hits.map(|hits| hits.saturating_add(more))
-                .map_err(|_| Unset::Hits)
+            let hits = hits.map(|hits| hits.saturating_add(more));
+            // Such a count would stop as if none had been said.
+            let hits = hits.ok().filter(|hits| *hits > 0);
+            hits.ok_or(Unset::Hits)
         }
     }
+}
+
+/// What of a breakpoint is written and has nothing in it; clients leave out what they do not mean, or send no letter.
+fn blank(one: &Value) -> Option<&'static str> {
+    let parts = [
+        ("condition", "condition"),
+        ("hitCondition", "count of hits"),
+        ("logMessage", "log message"),
+    ];
+    let is_blank = |name: &str| {
+        let text = one.get(name).and_then(Value::as_str);
+        text.is_some_and(|text| !text.is_empty() && text.trim().is_empty())
+    };
+    let found = parts.into_iter().find(|(name, _)| is_blank(name));
+    found.map(|(_, what)| what)
 }
 
 impl Points {
@@ -135,6 +164,9 @@ impl Points {
             let why = why.to_string();
             json!({"verified": false, "message": why, "line": line.max(1)})
         };
+        if let Some(what) = blank(one) {
+            return Ok(refused(&Unset::Blank(what)));
+        }
         let from_hit = match hits(&text(one, "hitCondition")) {
             Ok(hits) => hits,
             Err(why) => return Ok(refused(&why)),
@@ -154,6 +186,8 @@ impl Points {
             }
         };
         let mut first = None;
+        self.ids += 1;
+        let id = self.ids;
         for spot in spots {
             let point = Breakpoint {
                 at: spot.clone(),
@@ -167,50 +201,84 @@ impl Points {
                 return Ok(refused(&Unset::Refused(why)));
             }
             let number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
-            self.set.push(Set {
+            let set = Set {
                 kind,
+                id,
                 number,
                 point,
-            });
-            let line = match &spot {
-                Spot::Block(block) => Some(listing.line_of(block)),
-                Spot::Change(_) => None,
+                refused: None,
             };
-            first.get_or_insert((number, line));
+            first.get_or_insert_with(|| set.told(listing));
+            self.set.push(set);
         }
-        Ok(match first {
-            Some((number, None)) => json!({"id": number, "verified": true}),
-            Some((number, Some(line))) => json!({"id": number, "verified": true, "line": line}),
-            None => refused(&Unset::Nowhere(kind)),
-        })
+        Ok(first.unwrap_or_else(|| refused(&Unset::Nowhere(kind))))
     }
 
-    /// Sets all again, for a program that has begun anew; what is to be told of those that cannot be set any more.
-    pub fn set_again(&mut self, target: &mut dyn Target) -> Result<Vec<Value>, Error> {
-        let mut told = Vec::new();
+    /// Sets all again, for a program that has begun anew.
+    pub fn set_again(&mut self, target: &mut dyn Target) -> Result<(), Error> {
         for set in &mut self.set {
-            let answer = target.order(&Order::Break(set.point.clone()))?;
-            if let Some(why) = why_not(&answer) {
-                told.push(json!({"id": set.number, "verified": false, "message": why}));
-            }
-            set.number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
+            set.put(target)?;
         }
-        Ok(told)
+        Ok(())
     }
 
-    /// Where those of blocks are in another text.
+    /// Sets those again that an earlier version could not have.
+    pub fn set_missing(&mut self, target: &mut dyn Target) -> Result<(), Error> {
+        for set in self.set.iter_mut().filter(|set| set.refused.is_some()) {
+            set.put(target)?;
+        }
+        Ok(())
+    }
+
+    /// What a client is to know of each in another text, by the ids that it has.
     pub fn places(&self, listing: &Listing) -> Vec<Value> {
-        let places = self.set.iter().filter_map(|set| match &set.point.at {
+        let mut told: Vec<(u64, Value)> = Vec::new();
+        for set in &self.set {
+            let now = set.told(listing);
+            match told.last_mut() {
+                // Of several blocks the first that is there counts.
+                Some((id, before)) if *id == set.id => {
+                    if before["verified"] == false {
+                        *before = now;
+                    }
+                }
+                Some(_) | None => told.push((set.id, now)),
+            }
+        }
+        told.into_iter().map(|(_, told)| told).collect()
+    }
+
+    /// What the client calls a breakpoint of the program.
+    pub fn id_of(&self, number: u64) -> Option<u64> {
+        let mut all = self.set.iter().filter(|set| set.refused.is_none());
+        all.find(|set| set.number == number).map(|set| set.id)
+    }
+}
+
+impl Set {
+    /// Sets it in the program that runs.
+    fn put(&mut self, target: &mut dyn Target) -> Result<(), Error> {
+        let answer = target.order(&Order::Break(self.point.clone()))?;
+        self.refused = why_not(&answer);
+        self.number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
+        Ok(())
+    }
+
+    /// What a client is to know of it.
+    fn told(&self, listing: &Listing) -> Value {
+        let id = self.id;
+        if let Some(why) = &self.refused {
+            return json!({"id": id, "verified": false, "message": why});
+        }
+        match &self.point.at {
             Spot::Block(block) if listing.has(block) => {
-                let line = listing.line_of(block);
-                Some(json!({"id": set.number, "verified": true, "line": line}))
+                json!({"id": id, "verified": true, "line": listing.line_of(block)})
             }
             Spot::Block(_) => {
                 let why = "the new version has no such block";
-                Some(json!({"id": set.number, "verified": false, "message": why}))
+                json!({"id": id, "verified": false, "message": why})
             }
-            Spot::Change(_) => None,
-        });
-        places.collect()
+            Spot::Change(_) => json!({"id": id, "verified": true}),
+        }
     }
 }

@@ -8,6 +8,7 @@ mod again;
 
 use super::client::{Client, Incoming, Refused, Request};
 use super::greeting::capabilities;
+use super::keys;
 use crate::debug::target::{Channel, Event, Target};
 use crate::error::Error;
 use crate::language;
@@ -88,6 +89,8 @@ fn begin(request: &Request) -> Result<(Adapter, Debugged, String), Refused> {
         ));
     }
     is_for_robot(request, "Python")?;
+    // All others may be debugpy's.
+    keys::strangers(request, &keys::OF_PYTHON)?;
     let program = PathBuf::from(request.text("program").unwrap_or_default());
     let robot = match request.text("robot") {
         Some(robot) => place(robot),
@@ -442,7 +445,7 @@ impl<'a> Session<'a> {
                     self.errors.push(text);
                 }
             }
-            Event::Report(_) => {}
+            Event::Report(_) | Event::Asked(_) => {}
         }
     }
 

@@ -5,6 +5,7 @@
 
 use super::client::{Client, Incoming, Refused, Request};
 use super::greeting::capabilities;
+use super::keys;
 use crate::debug::target::{Channel, Event, Target, why_not};
 use crate::error::Error;
 use crate::remote::debugged::{Debugged, Runs};
@@ -48,7 +49,14 @@ pub(super) fn is_meant(request: &Request) -> bool {
 pub(super) fn serve(request: &Request, client: &mut Client) -> bool {
     match begin(request) {
         Ok(mut robot) => {
+            let strangers = keys::strangers(request, &keys::OF_JAVASCRIPT);
+            let strangers = strangers.unwrap_or_default();
             client.answer(request, Ok(Value::Null));
+            if let Some(told) = keys::of_strangers(&strangers, &keys::OF_JAVASCRIPT) {
+                let text = format!("trik dap: {told}\n");
+                let body = json!({"category": "important", "output": text});
+                client.event("output", body);
+            }
             let changed = changed();
             client.event("capabilities", json!({ "capabilities": changed }));
             Session {
@@ -73,6 +81,7 @@ pub(super) fn serve(request: &Request, client: &mut Client) -> bool {
 
 fn begin(request: &Request) -> Result<Debugged, Refused> {
     super::python::is_for_robot(request, "JavaScript")?;
+    keys::strangers(request, &keys::OF_JAVASCRIPT)?;
     let robot = match request.text("robot") {
         Some(robot) => place(robot),
         None => the_one(),
@@ -187,6 +196,7 @@ impl Session<'_> {
                 self.learn(told);
                 self.tell_stop();
             }
+            Event::Asked(_) => {}
             Event::Over(_) => self.tell_end(u8::from(self.had_error)),
         }
     }

@@ -105,8 +105,9 @@ impl<'a> Session<'a> {
         if begins == Begins::First {
             self.client.event("initialized", json!({}));
         } else {
-            let told = self.points.set_again(self.target)?;
-            self.tell_points(told);
+            self.tell_text();
+            self.points.set_again(self.target)?;
+            self.tell_points();
             self.order(&Order::Errors(self.points.stops_at_errors))?
                 .ok();
             self.begin()?;
@@ -118,21 +119,27 @@ impl<'a> Session<'a> {
     fn go_on_changed(&mut self) -> Result<(), Error> {
         self.is_configured = true;
         self.order(&Order::Look)?.ok();
-        let source = view::source(&self.name);
-        self.client.event(
-            "loadedSource",
-            json!({"reason": "changed", "source": source}),
-        );
-        let told = self.points.places(self.listing);
-        self.tell_points(told);
+        self.tell_text();
+        self.points.set_missing(self.target)?;
+        self.tell_points();
         if matches!(self.told.state, State::Stopped | State::Past) {
             self.tell_stop();
         }
         Ok(())
     }
 
-    fn tell_points(&mut self, points: Vec<Value>) {
-        for point in points {
+    /// The text that the client has may be another one now.
+    fn tell_text(&mut self) {
+        let source = view::source(&self.name);
+        self.client.event(
+            "loadedSource",
+            json!({"reason": "changed", "source": source}),
+        );
+    }
+
+    /// Which breakpoints are set now, and where.
+    fn tell_points(&mut self) {
+        for point in self.points.places(self.listing) {
             let body = json!({"reason": "changed", "breakpoint": point});
             self.client.event("breakpoint", body);
         }
@@ -197,7 +204,7 @@ impl<'a> Session<'a> {
                 self.is_over = true;
                 true
             }
-            Event::Said(..) => true,
+            Event::Said(..) | Event::Asked(_) => true,
         });
         Ok(events)
     }
@@ -218,6 +225,8 @@ impl<'a> Session<'a> {
                 }
                 Event::Said(Channel::Output, text) => self.output("stdout", text),
                 Event::Said(Channel::Message, text) => self.output("stderr", text),
+                // An editor has no place to answer, and does not say that somebody would.
+                Event::Asked(_) => {}
                 Event::Over(why) => over = Some(why.clone()),
             }
         }
@@ -277,8 +286,8 @@ impl<'a> Session<'a> {
         if let Some(thread) = view::stopped_thread(&self.told) {
             body["threadId"] = json!(thread);
         }
-        if let Some(number) = stop.number {
-            body["hitBreakpointIds"] = json!([number]);
+        if let Some(id) = stop.number.and_then(|number| self.points.id_of(number)) {
+            body["hitBreakpointIds"] = json!([id]);
         }
         if let Some(text) = text {
             body["description"] = json!(text);

@@ -17,6 +17,8 @@ pub(crate) struct Report {
     pub with_errors: bool,
     pub stop: Option<Stop>,
     pub threads: Vec<Thread>,
+    /// Names of the threads that somebody holds alone.
+    pub held: Vec<String>,
     pub variables: Vec<Variable>,
     /// Of a data-flow program: the last token of each port, and ports at which tokens wait.
     pub ports: Vec<Port>,
@@ -68,6 +70,8 @@ pub(crate) struct At {
     pub diagram: String,
     pub id: String,
     pub block: String,
+    /// Of a program in JavaScript: the line, of the file that `diagram` names.
+    pub line: Option<u64>,
     /// Of a data-flow program that is stopped: the port that a token is about to reach, and the token.
     pub token: Option<Port>,
 }
@@ -196,6 +200,9 @@ impl Report {
             with_errors: truth(value, "with_errors"),
             stop: value.get("stop").map(stop),
             threads: list(value, "threads", thread),
+            held: list(value, "held", |name| {
+                name.as_str().unwrap_or_default().to_owned()
+            }),
             variables: list(value, "variables", |variable| Variable {
                 name: text(variable, "name"),
                 kind: text(variable, "type"),
@@ -237,6 +244,7 @@ fn at(value: &Value) -> At {
         diagram: text(value, "diagram"),
         id: text(value, "id"),
         block: text(value, "block"),
+        line: None,
         token: value.get("port").map(|_| port(value)),
     }
 }
@@ -273,11 +281,21 @@ fn stop(value: &Value) -> Stop {
     }
 }
 
+/// Where a thread of a program in JavaScript is.
+fn frame(value: &Value) -> Option<At> {
+    let frame = value.get("frames")?.get(0)?;
+    Some(At {
+        diagram: text(frame, "file"),
+        line: number(frame, "line"),
+        ..At::default()
+    })
+}
+
 fn thread(value: &Value) -> Thread {
     Thread {
         number: number(value, "number").unwrap_or_default(),
         name: text(value, "name"),
-        at: value.get("at").map(at).unwrap_or_default(),
+        at: value.get("at").map(at).or(frame(value)).unwrap_or_default(),
         does: text(value, "does"),
         waits_for: text(value, "for"),
         port: text(value, "port"),

@@ -3,6 +3,7 @@
 //! Owns the run, where its robot was at each moment, and what was said of it so far. Rules, program and debugger are those
 //! of `sim`, `lang-diagram` and `lang-dataflow`.
 
+use super::asking::{Asking, Listener};
 use super::stops::words;
 use super::target::words::told;
 use super::target::{Changed, Channel, Event, Target, Written, lines, problems};
@@ -44,13 +45,17 @@ pub(crate) struct Stage<'a> {
     speed: Option<f64>,
     /// When the model's time was what, while it runs at a speed.
     pace: Option<(Instant, u32)>,
+    asking: Asking,
 }
 
 impl<'a> Stage<'a> {
     /// Stopped before the first block.
     fn new(task: &Task, program: Debugged, settings: &'a Settings, world: World) -> Self {
+        let asking = Asking::default();
+        let mut trial = Trial::new(task, &program, settings);
+        trial.set_person(Box::new(asking.clone()));
         Self {
-            trial: Some(Trial::new(task, &program, settings)),
+            trial: Some(trial),
             program,
             outcome: None,
             has_told_end: false,
@@ -62,6 +67,7 @@ impl<'a> Stage<'a> {
             world,
             speed: None,
             pace: None,
+            asking,
         }
     }
 
@@ -141,6 +147,12 @@ impl<'a> Stage<'a> {
             .filter_map(|text| Some(Event::Report(serde_json::from_str(text).ok()?)))
             .collect();
         self.said(&mut events);
+        if let Some(asked) = self.asking.missed() {
+            let words = words::nobody_answers(&asked.variable);
+            let said = words::in_locale(self.settings.locale, words);
+            events.push(Event::Said(Channel::Message, said));
+        }
+        events.extend(self.asking.news().map(Event::Asked));
         events
     }
 
@@ -186,6 +198,8 @@ impl Target for Stage<'_> {
     fn order(&mut self, order: &Order) -> Result<Value, Error> {
         self.tag += 1;
         self.pace = None;
+        // A program that is to stop stops before it has its answer.
+        self.asking.put_off(*order == Order::Pause);
         let text = order.to_string();
         let answer = match &mut self.trial {
             Some(trial) => debugged::order(trial, &mut self.program, self.tag, &text),
@@ -197,7 +211,7 @@ impl Target for Stage<'_> {
 
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
         let until = Instant::now() + wait;
-        'turn: while self.progress() == Progress::Runs {
+        'turn: while self.progress() == Progress::Runs && !self.asking.is_waiting() {
             for _ in 0..TICKS {
                 let Some(trial) = &mut self.trial else {
                     break 'turn;
@@ -205,7 +219,8 @@ impl Target for Stage<'_> {
                 let now = trial.now();
                 let progress = trial.tick(&mut self.program);
                 self.note_pose();
-                if progress != Progress::Runs {
+                self.asking.tick();
+                if progress != Progress::Runs || self.asking.is_waiting() {
                     break 'turn;
                 }
                 let due = self
@@ -229,7 +244,11 @@ impl Target for Stage<'_> {
             self.has_told_end = true;
             events.push(Event::Over(ending(outcome, self.settings.locale)));
         }
-        if events.is_empty() && self.progress() != Progress::Runs {
+        let is_asking = self.asking.is_waiting();
+        if is_asking {
+            self.pace = None;
+        }
+        if events.is_empty() && (is_asking || self.progress() != Progress::Runs) {
             std::thread::sleep(until.saturating_duration_since(Instant::now()));
         }
         Ok(events)
@@ -265,6 +284,14 @@ impl Target for Stage<'_> {
             Ok(patched) => Changed::InForce(told(&patched, locale)),
             Err(why) => Changed::CannotBe(explained(&why, locale)),
         })
+    }
+
+    fn attend(&mut self, listener: Listener) {
+        self.asking.attend(listener);
+    }
+
+    fn answer(&mut self, text: &str) {
+        self.asking.answer(text);
     }
 
     /// Nothing moves any more: its time stands still.

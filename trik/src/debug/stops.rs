@@ -57,14 +57,32 @@ pub(crate) fn standing(told: &Report, listing: Option<&Listing>, locale: Locale)
     Some(in_locale(locale, words))
 }
 
-/// The same for a line among others; nothing if it is not stopped.
+/// The same for a line among others, with blocks as people see them; nothing if it is not stopped.
 pub(crate) fn in_one_line(told: &Report) -> Option<String> {
-    let lines = lines(told, None, Locale::English);
+    let mut lines = lines(told, None, Locale::English);
+    if let (Some(line), Some(at)) = (lines.get_mut(1), told.at()) {
+        *line = short(at);
+    }
     let lines: Vec<_> = lines
         .iter()
+        .flat_map(|line| line.lines())
         .map(|line| line.trim_start_matches('>').trim())
+        .filter(|line| !line.is_empty())
         .collect();
     (!lines.is_empty()).then(|| format!("stopped {}", lines.join(", ")))
+}
+
+/// A place without the id of its block.
+fn short(at: &At) -> String {
+    let (diagram, block) = (harmless(&at.diagram), harmless(&at.block));
+    match (&at.token, at.line) {
+        (Some(token), _) => format!("{diagram}, {}", harmless(&token.block)),
+        // What was uploaded as a text has no file.
+        (None, Some(line)) if at.diagram.starts_with('<') => format!("line {line}"),
+        (None, Some(line)) => format!("{diagram} line {line}"),
+        (None, None) if at.block.is_empty() => String::new(),
+        (None, None) => format!("{diagram}, {block}"),
+    }
 }
 
 fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
@@ -105,6 +123,7 @@ fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
         None if let Some(token) = &at.token => {
             format!(">     {diagram}, {}", harmless(&token.block))
         }
+        None if at.id.is_empty() => format!(">     {}", short(at)),
         None => format!(">     {diagram}, {block} {}", harmless(&at.id)),
     }
 }

@@ -5,6 +5,7 @@
 /// What a robot answers to clients, in English and Russian.
 pub(crate) mod words;
 
+use super::asking::{Asked, Listener};
 use super::stops::words as stops;
 use crate::diagrams::flow::{Flow, Program};
 use crate::error::Error;
@@ -42,6 +43,12 @@ pub(crate) trait Target {
         diagram: Option<&str>,
         version: Written<'_>,
     ) -> Result<Changed, Error>;
+
+    /// Who answers questions of the program from now on; nobody does before.
+    fn attend(&mut self, _listener: Listener) {}
+
+    /// What a person says to the question that was told last.
+    fn answer(&mut self, _text: &str) {}
 
     /// Ends the program: motors rest.
     fn end(&mut self);
@@ -109,6 +116,8 @@ pub(crate) enum Event {
     Report(Value),
     /// The program, or somebody about it, has said something.
     Said(Channel, String),
+    /// The program asks a person, who is there.
+    Asked(Asked),
     /// The run is over, and why.
     Over(String),
 }

@@ -3,8 +3,10 @@
 //! Owns what a person sees. The program runs while nothing is asked for; Ctrl-C stops it. Lines that come from a file or a
 //! pipe are read one after the other, each when the program has stopped.
 
+use super::asking::{Asked, Listener};
 use super::listing::Listing;
 use super::report::{Report, State};
+use super::signals::{Pressed, interrupts, pressed};
 use super::stops::{self, words};
 use super::target::{Changed, Channel, Event, Target, Written, log_lines, why_not};
 use super::words::{ROWS, Typed, understand};
@@ -12,16 +14,16 @@ use crate::diagrams::flow;
 use crate::diagrams::save::must;
 use crate::error::Error;
 use crate::limits;
+use crate::remote::person::question_of;
 use crate::terminal::harmless;
 use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
 use lang_text::problem::{Locale, Words};
-use nix::sys::signal::{SigSet, Signal};
-use nix::sys::signalfd::{SfdFlags, SignalFd};
+use nix::sys::signalfd::SignalFd;
 use serde_json::Value;
 use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
 use std::time::Duration;
 
 /// Lines of the diagram that are shown before and after one.
@@ -48,6 +50,9 @@ pub(crate) struct Terminal<'a> {
     /// Whether somebody reads prompts.
     is_interactive: bool,
     last: String,
+    lines: Receiver<String>,
+    /// A question of the program that is not answered.
+    asked: Option<Asked>,
     /// Somebody wants this process to end.
     is_leaving: bool,
 }
@@ -62,6 +67,9 @@ impl<'a> Terminal<'a> {
             told: Report::default(),
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
+            // Read once signals are: its thread must not have them.
+            lines: sync_channel(0).1,
+            asked: None,
             is_leaving: false,
         }
     }
@@ -72,12 +80,12 @@ impl<'a> Terminal<'a> {
     /// The robot is gone, or nobody can hear.
     pub(crate) fn run(&mut self) -> Result<(), Error> {
         let keys = interrupts().map_err(|error| Error::system("signals", error))?;
-        let lines = lines();
+        self.lines = lines();
         self.says(words::greeting())?;
         self.wait(&keys)?;
         while !self.is_leaving {
             self.prompt()?;
-            let Some(line) = self.line(&lines, &keys)? else {
+            let Some(line) = self.line(&keys)? else {
                 return Ok(());
             };
             if !self.is_interactive {
@@ -119,9 +127,9 @@ impl<'a> Terminal<'a> {
     }
 
     /// The next line; none at the end.
-    fn line(&mut self, lines: &Receiver<String>, keys: &SignalFd) -> Result<Option<String>, Error> {
+    fn line(&mut self, keys: &SignalFd) -> Result<Option<String>, Error> {
         loop {
-            match lines.recv_timeout(TURN) {
+            match self.lines.recv_timeout(TURN) {
                 Ok(line) => return Ok(Some(line)),
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
                 Err(RecvTimeoutError::Timeout) => {
@@ -219,15 +227,24 @@ impl<'a> Terminal<'a> {
 
     /// Lets the program run until it stops.
     fn wait(&mut self, keys: &SignalFd) -> Result<(), Error> {
+        // It was stopped while it asked.
+        self.show_question()?;
         loop {
             let events = self.target.turn(TURN)?;
             let has_ended = events.iter().any(|event| matches!(event, Event::Over(_)));
             self.hear(&events)?;
+            if has_ended {
+                self.asked = None;
+            }
             if has_ended || !self.told.state.is_under_way() {
                 return Ok(());
             }
+            self.answer()?;
             match pressed(keys) {
                 Some(Pressed::Interrupt) => {
+                    if self.is_interactive && self.asked.is_some() {
+                        self.say("")?;
+                    }
                     self.target.order(&Order::Pause)?;
                 }
                 Some(Pressed::Leave) => {
@@ -239,12 +256,49 @@ impl<'a> Terminal<'a> {
         }
     }
 
+    /// Shows the question that is open to a person; elsewhere it is shown with its answer.
+    fn show_question(&self) -> Result<(), Error> {
+        let Some(asked) = self.asked.as_ref().filter(|_| self.is_interactive) else {
+            return Ok(());
+        };
+        let mut out = io::stdout().lock();
+        let shown = question(asked);
+        let said = out.write_all(shown.as_bytes()).and_then(|()| out.flush());
+        said.map_err(|error| Error::system("standard output", error))
+    }
+
+    /// Passes the next line on to the program, if it asks.
+    fn answer(&mut self) -> Result<(), Error> {
+        let Some(asked) = &self.asked else {
+            return Ok(());
+        };
+        let line = match self.lines.try_recv() {
+            Ok(line) => Some(line),
+            Err(TryRecvError::Empty) => return Ok(()),
+            Err(TryRecvError::Disconnected) => None,
+        };
+        if !self.is_interactive {
+            let typed = line.as_deref().unwrap_or_default();
+            let shown = format!("{}{}", question(asked), harmless(typed));
+            self.say(shown.trim_end())?;
+        }
+        self.asked = None;
+        match line {
+            Some(line) => self.target.answer(&line),
+            None => {
+                self.says(words::answers_end())?;
+                self.target.attend(Listener::Gone);
+            }
+        }
+        Ok(())
+    }
+
     fn hear(&mut self, events: &[Event]) -> Result<(), Error> {
         self.hear_but_states(events)?;
         let is_over = events.iter().any(|event| matches!(event, Event::Over(_)));
         let mut states = events.iter().filter_map(|event| match event {
             Event::Report(value) => Report::read(value),
-            Event::Said(..) | Event::Over(_) => None,
+            Event::Said(..) | Event::Asked(_) | Event::Over(_) => None,
         });
         let Some(told) = states.next_back() else {
             return Ok(());
@@ -275,6 +329,10 @@ impl<'a> Terminal<'a> {
                 Event::Said(Channel::Message, text) if text.trim().is_empty() => {}
                 Event::Said(Channel::Message, text) => {
                     self.say(&format!("! {}", harmless(text)))?
+                }
+                Event::Asked(asked) => {
+                    self.asked = Some(asked.clone());
+                    self.show_question()?;
                 }
                 Event::Over(why) => {
                     self.say(&harmless(why))?;
@@ -481,36 +539,14 @@ impl<'a> Terminal<'a> {
     }
 }
 
+/// A question, with a blank behind it for the answer.
+fn question(asked: &Asked) -> String {
+    question_of(&asked.variable, &asked.prompt, &asked.default)
+}
+
 /// Lines of others, for a terminal.
 fn lines_of(text: &str) -> String {
     text.lines().map(harmless).collect::<Vec<_>>().join("\n")
-}
-
-/// Ctrl-C, and the ends of a terminal and a session, as something to read.
-fn interrupts() -> nix::Result<SignalFd> {
-    let signals: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP]
-        .into_iter()
-        .collect();
-    signals.thread_block()?;
-    SignalFd::with_flags(&signals, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
-}
-
-/// What a signal asks for.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Pressed {
-    /// To stop the program.
-    Interrupt,
-    /// To leave.
-    Leave,
-}
-
-fn pressed(keys: &SignalFd) -> Option<Pressed> {
-    let info = keys.read_signal().ok()??;
-    let is_interrupt = i32::try_from(info.ssi_signo) == Ok(Signal::SIGINT as i32);
-    Some(match is_interrupt {
-        true => Pressed::Interrupt,
-        false => Pressed::Leave,
-    })
 }
 
 /// Lines from standard input, read when there is room for them.

@@ -304,8 +304,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "hold",
         "THREAD",
-        "hold a thread and let the others go on; release THREAD undoes it",
-        "задержать поток, остальные идут дальше; release THREAD отпускает",
+        "hold a thread at its next block and let the others go on; release THREAD undoes it",
+        "задержать поток у следующего блока, остальные идут дальше; release THREAD отпускает",
     ),
     row(
         "reload",
@@ -316,8 +316,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "where w",
         "",
-        "where the robot is at this moment",
-        "где робот в этот момент",
+        "in a simulated world: where the robot is at this moment",
+        "в моделируемом мире: где робот в этот момент",
     ),
     row(
         "motors",
@@ -328,8 +328,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "quit q",
         "",
-        "end; the program is ended too",
-        "закончить; программа заканчивается тоже",
+        "end; the program is ended too, but for one that was joined with --attach, which goes on",
+        "закончить; программа заканчивается тоже, а та, к которой подключились с --attach, идёт дальше",
     ),
 ];
 

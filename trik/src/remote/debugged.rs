@@ -6,6 +6,7 @@
 use super::link::{Link, Message, ms};
 use super::relay::Relay;
 use super::upload::Upload;
+use crate::debug::asking::{Asked, Listener};
 use crate::debug::target::words;
 use crate::debug::target::{Changed, Channel, Event, Target, Written, why_not};
 use crate::error::Error;
@@ -72,6 +73,8 @@ pub(crate) struct Debugged {
     /// The program whose change is waited for, and what has become of it.
     awaits: Option<String>,
     is_changed: Option<Changed>,
+    /// The number of the question that was told last, and what it proposes.
+    question: Option<(u64, String)>,
 }
 
 impl Debugged {
@@ -214,6 +217,7 @@ impl Debugged {
             python: None,
             awaits: None,
             is_changed: None,
+            question: None,
         }
     }
 
@@ -271,7 +275,7 @@ impl Debugged {
     pub(crate) fn forget_states(&mut self) {
         self.events.retain(|event| match event {
             Event::Report(told) => told.get("state").is_none(),
-            Event::Said(..) | Event::Over(_) => true,
+            Event::Said(..) | Event::Asked(_) | Event::Over(_) => true,
         });
     }
 
@@ -312,14 +316,30 @@ impl Debugged {
                     let text = String::from_utf8_lossy(&text).into_owned();
                     self.put(Event::Said(Channel::Output, text));
                 }
-                Message::Info(_)
-                | Message::Version
-                | Message::Status(_)
-                | Message::Question(_)
-                | Message::Stream(_) => {}
+                Message::Info(_) | Message::Version | Message::Status(_) | Message::Stream(_) => {}
+                Message::Question(json) => self.question(&json),
             }
         }
         Ok(None)
+    }
+
+    /// A question of the program; only who attends is asked.
+    fn question(&mut self, json: &str) {
+        let told: Value = serde_json::from_str(json).unwrap_or_default();
+        let text = |name: &str| {
+            let text = told.get(name).and_then(Value::as_str);
+            text.unwrap_or_default().to_owned()
+        };
+        let asked = Asked {
+            variable: text("variable"),
+            prompt: text("question"),
+            default: text("default"),
+        };
+        let number = told.get("number").and_then(Value::as_u64);
+        if let Some(number) = number {
+            self.question = Some((number, asked.default.clone()));
+            self.put(Event::Asked(asked));
+        }
     }
 
     fn hear(&mut self, told: Value) {
@@ -404,6 +424,26 @@ impl Target for Debugged {
         self.awaits = None;
         let changed = self.is_changed.take();
         changed.ok_or_else(|| self.silence())
+    }
+
+    fn attend(&mut self, listener: Listener) {
+        match listener {
+            Listener::Person => self.link.ask(&[b"questions"]),
+            Listener::Nobody | Listener::Gone => {
+                if let Some((number, _)) = self.question.take() {
+                    self.link.ask(&[format!("answer:{number}").as_bytes()]);
+                }
+                self.link.ask(&[b"noquestions"]);
+            }
+        }
+    }
+
+    fn answer(&mut self, text: &str) {
+        if let Some((number, default)) = self.question.take() {
+            let text = if text.is_empty() { &default } else { text };
+            self.link
+                .ask(&[format!("answer:{number}:{text}").as_bytes()]);
+        }
     }
 
     fn keeps_past(&self) -> bool {

@@ -229,10 +229,11 @@ fn debugger(link: &mut Link, status: &[String]) -> Vec<String> {
         return Vec::new();
     };
     let told = answer.get("program").and_then(Report::read);
-    let mut lines: Vec<_> = told
-        .and_then(|told| stops::in_one_line(&told))
-        .into_iter()
-        .collect();
+    let stopped = told.as_ref().and_then(stops::in_one_line);
+    let held = told.map(|told| told.held.join(", "));
+    let held = held.filter(|names| !names.is_empty());
+    let mut lines: Vec<_> = stopped.into_iter().collect();
+    lines.extend(held.map(|names| format!("held {names}")));
     let control = control.map(|holder| news::debugs(&holder).trim_end().to_owned());
     lines.extend(control.filter(|line| !status.contains(line)));
     lines

@@ -35,18 +35,7 @@ impl Person {
             text.unwrap_or_default().to_owned()
         };
         let default = text("default");
-        let said = match text("question").as_str() {
-            "" => format!("{} =", text("variable")),
-            question => question.to_owned(),
-        };
-        let shown = match default.as_str() {
-            "" => format!("{} ", harmless(&said).trim_end()),
-            default => format!(
-                "{} [{}] ",
-                harmless(&said).trim_end(),
-                harmless(default).trim_end()
-            ),
-        };
+        let shown = question_of(&text("variable"), &text("question"), &default);
         // What was wrong with the last answer to the same question.
         let shown = match text("wrong").as_str() {
             "" => shown,
@@ -70,6 +59,19 @@ impl Person {
         };
         self.open = None;
         Some(request.into_bytes())
+    }
+}
+
+/// How a question is shown, with a blank behind it for the answer.
+pub(crate) fn question_of(variable: &str, prompt: &str, default: &str) -> String {
+    let said = match prompt {
+        "" => format!("{variable} ="),
+        prompt => prompt.to_owned(),
+    };
+    let said = harmless(&said).trim_end().to_owned();
+    match default {
+        "" => format!("{said} "),
+        default => format!("{said} [{}] ", harmless(default).trim_end()),
     }
 }
 

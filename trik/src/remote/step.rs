@@ -106,6 +106,15 @@ pub(crate) struct ContinueArgs {
 /// The file cannot be read, the place is none, or the robot is gone.
 pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
     let listing = listing(&args.at)?;
+    if let Some(condition) = &args.condition
+        && condition.trim().is_empty()
+    {
+        let why = words::empty_condition();
+        return Err(Refusal {
+            code: UNREADABLE,
+            ..Refusal::new(why.in_locale(args.at.language).to_owned())
+        });
+    }
     let point = match args.change {
         true => Breakpoint::of_changes(args.place.trim()),
         false => Breakpoint::before(block(&args.place, listing.as_ref(), args.at.language)?),
@@ -276,6 +285,8 @@ fn finish(
                     standard(format!("{}\n", harmless(text)).as_bytes())?;
                 }
                 Event::Said(Channel::Message, text) => say(&harmless(&text)),
+                // Who has run it is asked.
+                Event::Asked(_) => {}
                 Event::Over(why) => {
                     say(&harmless(&words::told(&why, at.language)));
                     return Ok(1);

@@ -229,6 +229,10 @@ impl<'a> Picture<'a> {
                 false => format!("{name}: {place}"),
             });
         }
+        if !told.held.is_empty() {
+            let names = harmless(&told.held.join(", "));
+            lines.push(words::in_locale(self.locale, words::held(&names)));
+        }
         if self.is_drawn && !told.variables.is_empty() {
             lines.push(String::new());
         }
@@ -302,6 +306,18 @@ impl<'a> Picture<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn threads_that_are_held_are_shown() {
+        let told = serde_json::json!({
+            "state": "running",
+            "threads": [{"name": "main", "at": {"block": "Timer"}}],
+            "held": ["other", "third"],
+        });
+        let told = Report::read(&told).expect("a state");
+        let mut picture = Picture::new(None, false, Locale::English);
+        assert_eq!(picture.lines(&told), ["main: Timer", "held: other, third"]);
+    }
 
     #[test]
     fn the_last_values_of_a_variable_are_drawn() {

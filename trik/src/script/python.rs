@@ -275,7 +275,8 @@ impl Python {
             | FromProgram::Changed { .. }
             | FromProgram::Debug { .. }
             | FromProgram::DebugLog(_)
-            | FromProgram::Question { .. } => {}
+            | FromProgram::Question { .. }
+            | FromProgram::Stopped(_) => {}
         }
         None
     }

@@ -4,6 +4,8 @@
 mod coefficient;
 /// Frames that an editor sends, and some that none does.
 mod dap;
+/// Its breakpoints over a restart, and what it writes into its launch.
+mod dap_told;
 /// Data-flow programs in a simulated world.
 mod flow;
 /// Programs in Python under debugpy.
@@ -30,6 +32,15 @@ pub(super) fn counting() -> Vec<u8> {
 
 /// The same blocks with another body of the one that counts.
 pub(super) fn counting_by(body: &str) -> Vec<u8> {
+    counting_with(body, None)
+}
+
+/// The same after one more block, which moves all others down by a line.
+pub(super) fn counting_after(first: &str) -> Vec<u8> {
+    counting_with("n = n + 1\nprint(n)", Some(first))
+}
+
+fn counting_with(body: &str, first: Option<&str>) -> Vec<u8> {
     let mut sketch = Sketch::new();
     let twice = sketch.subprogram("twice", &[]);
     sketch.draw_on(twice);
@@ -46,7 +57,13 @@ pub(super) fn counting_by(body: &str) -> Vec<u8> {
     let call = sketch.call(twice, &[]);
     let wait = sketch.block("Timer", &[("Delay", "100")]);
     let end = sketch.block("FinalNode", &[]);
-    sketch.chain(&[start, clear, head]);
+    // The last one drawn, so that all others have the ids that they have without it.
+    let first = first.map(|first| sketch.block("Function", &[("Body", first)]));
+    let begin: Vec<_> = [Some(start), first, Some(clear), Some(head)]
+        .into_iter()
+        .flatten()
+        .collect();
+    sketch.chain(&begin);
     sketch.guarded(head, count, "iteration");
     sketch.chain(&[count, call, wait, head]);
     sketch.link(head, end);
@@ -79,6 +96,54 @@ fn a_variable_is_watched_forwards_and_backwards() {
     insta::assert_snapshot!(told);
 }
 
+/// Asks for a number and prints ten times of it.
+fn asking(default: &str) -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let question = [
+        ("variable", "n"),
+        ("prompt", "How many?"),
+        ("default", default),
+    ];
+    let ask = sketch.block("Input", &question);
+    let said = sketch.block("Function", &[("Body", "print(n * 10)")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, ask, said, end]);
+    sketch.qrs().expect("a save")
+}
+
+#[test]
+fn a_block_that_asks_is_answered_by_the_next_line() {
+    let board = Board::new();
+    board.file("ask.qrs", asking("1"));
+    board.file("bare.qrs", asking(""));
+    board.file("answers.txt", "7\n");
+    let words = ["debug", "ask.qrs"];
+    let said = |words: &[&str], typed: &str| debug(&board, words, typed).good();
+    for (typed, heard) in [
+        ("c\n2 + 2\nq\n", "(trik) c\nHow many? [1] 2 + 2\n40\n"),
+        ("c\n\nq\n", "(trik) c\nHow many? [1]\n10\n"),
+        // A line of the debugger is one again afterwards.
+        ("break 3\nc\n6\np n + 1\nrn\nq\n", "How many? [1] 6\n"),
+        ("break 3\nc\n6\np n + 1\nrn\nq\n", "(trik) p n + 1\n7\n"),
+    ] {
+        let told = said(&words, typed);
+        assert!(told.contains(heard), "{typed}: {told}");
+        assert!(!told.contains("nobody"), "{told}");
+    }
+    let told = said(&words, "c\n");
+    let nobody = "How many? [1]\nnobody is there to answer any more: ";
+    assert!(told.contains(nobody) && told.contains("\n10\n"), "{told}");
+    assert_eq!(told.matches("nobody").count(), 1, "{told}");
+    let told = said(&["debug", "bare.qrs", "--inputs", "answers.txt"], "c\nq\n");
+    assert!(told.contains("(trik) c\n70\n"), "{told}");
+    assert!(!told.contains("How many?"), "{told}");
+    let limit = ["debug", "bare.qrs", "--time-limit", "1", "--language", "ru"];
+    let told = said(&limit, "c\n");
+    let nobody = "\u{43e}\u{442}\u{432}\u{435}\u{447}\u{430}\u{442}\u{44c} ";
+    assert_eq!(told.matches(nobody).count(), 1, "{told}");
+}
+
 #[test]
 fn all_breakpoints_are_listed() {
     let board = Board::new();
@@ -105,6 +170,19 @@ fn a_file_is_taken_again_and_the_program_goes_on() {
         "(trik) reload\nthe program has ended\nnothing is changed; quit and start again to begin anew",
     ] {
         assert!(told.contains(line), "{line}: {told}");
+    }
+}
+
+#[test]
+fn an_empty_condition_is_refused_before_a_robot_is_asked() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    for condition in ["", " "] {
+        let words = ["break", "4", "--if", condition, "--file", "count.qrs"];
+        let refused = debug(&board, &words, "");
+        assert_eq!(refused.code(), 2, "{}", refused.stderr);
+        let why = "--if needs a condition, such as --if 'n > 3'";
+        assert!(refused.stderr.contains(why), "{}", refused.stderr);
     }
 }
 
@@ -310,13 +388,7 @@ fn a_person_is_asked_and_a_program_is_watched() {
         return;
     };
     let home = &robot.robot.home;
-    let mut sketch = Sketch::new();
-    let start = sketch.block("InitialNode", &[]);
-    let ask = sketch.block("Input", &[("variable", "n"), ("prompt", "How many?")]);
-    let said = sketch.block("Function", &[("Body", "print(n * 10)")]);
-    let end = sketch.block("FinalNode", &[]);
-    sketch.chain(&[start, ask, said, end]);
-    let file = home.0.file("ask.qrs", sketch.qrs().expect("a save"));
+    let file = home.0.file("ask.qrs", asking(""));
     let mut command = home.command(&["run", file.to_str().expect("UTF-8"), "--robot", robot.ip()]);
     let said = tools::run(&mut command, b"2 + 2\n");
     assert_eq!(
@@ -326,6 +398,16 @@ fn a_person_is_asked_and_a_program_is_watched() {
         said.stderr
     );
     assert!(said.stderr.contains("How many? "), "{}", said.stderr);
+
+    // The person at a debugger is asked too.
+    let mut command = home.command(&[
+        "debug",
+        file.to_str().expect("UTF-8"),
+        "--robot",
+        robot.ip(),
+    ]);
+    let said = tools::run(&mut command, b"c\n5\nq\n").good();
+    assert!(said.contains("How many? 5\n50\n"), "{said}");
 
     let nothing = home.run(&["watch", "--robot", robot.ip()]);
     assert_eq!(nothing.code(), 1, "{}", nothing.stdout);

@@ -8,6 +8,7 @@ use crate::limits;
 use lang_dataflow::diary::Diary;
 use lang_diagram::machine::Machine;
 use lang_diagram::machine::trace::Trace;
+use lang_diagram::machine::view::Doing;
 use lang_diagram::program::Node;
 use lang_expr::Value;
 use lang_text::json::{self, Object};
@@ -24,6 +25,8 @@ pub struct Watch {
     is_new: bool,
     /// A thread has moved, begun or ended.
     has_moved: bool,
+    /// Numbers of the threads that were held alone when it was told last.
+    held: Vec<u16>,
     /// Assigned since the last time.
     changed: BTreeSet<String>,
     /// What was told when the program was loaded.
@@ -42,6 +45,7 @@ impl Watch {
             is_wanted: false,
             is_new: false,
             has_moved: false,
+            held: Vec::new(),
             changed: BTreeSet::new(),
             at_load: BTreeSet::new(),
             errors: Vec::new(),
@@ -72,7 +76,12 @@ impl Watch {
     /// Tells what is new, if it is time.
     pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
         let errors = self.tell_errors(host)?;
-        let is_news = self.is_new || self.has_moved || !self.changed.is_empty();
+        let held = match self.is_wanted {
+            true => held(machine),
+            false => Vec::new(),
+        };
+        let has_moved = self.has_moved || held != self.held;
+        let is_news = self.is_new || has_moved || !self.changed.is_empty();
         if !self.is_told(is_news, now, &errors) {
             return Ok(());
         }
@@ -85,6 +94,7 @@ impl Watch {
             &object_of(machine, &variables, &errors),
         )?;
         self.told(now);
+        self.held = held;
         Ok(())
     }
 
@@ -236,11 +246,26 @@ fn block(machine: &Machine, node: Node) -> &'static str {
         .map_or("unknown", |row| row.kind)
 }
 
+/// Numbers of the threads that are held alone.
+fn held(machine: &Machine) -> Vec<u16> {
+    if !machine.is_guarded() {
+        return Vec::new();
+    }
+    let views = machine.views();
+    let held = views.filter(|view| view.doing == Doing::Held);
+    held.map(|view| view.number).collect()
+}
+
 /// One line for people: `main: Timer; x = 3`.
 fn line(machine: &Machine, variables: &[(&str, &Value)]) -> String {
-    let threads = machine
-        .threads()
-        .map(|(name, node)| format!("{name}: {}", block(machine, node)));
+    let threads = machine.views().map(|view| {
+        let held = if view.doing == Doing::Held {
+            " (held)"
+        } else {
+            ""
+        };
+        format!("{}: {}{held}", view.name, block(machine, view.node))
+    });
     let values = variables
         .iter()
         .map(|(name, value)| format!("{name} = {}", value.printed()));
@@ -260,16 +285,18 @@ fn cut(mut line: String) -> String {
 /// One object for programs.
 fn object_of(machine: &Machine, variables: &[(&str, &Value)], errors: &[String]) -> String {
     let mut json = format!("{{\"ms\":{},\"threads\":[", machine.now());
-    for (index, (name, node)) in machine.threads().enumerate() {
+    for (index, view) in machine.views().enumerate() {
         let comma = if index > 0 { "," } else { "" };
+        let is_held = view.doing == Doing::Held;
         let program = machine.program();
         let _ = write!(
             json,
-            "{comma}{{\"name\":{},\"diagram\":{},\"id\":{},\"block\":{}}}",
-            quoted(name),
-            quoted(program.diagram(node).unwrap_or("")),
-            quoted(program.id(node).unwrap_or("")),
-            quoted(block(machine, node))
+            "{comma}{{\"name\":{},\"diagram\":{},\"id\":{},\"block\":{}{}}}",
+            quoted(view.name),
+            quoted(program.diagram(view.node).unwrap_or("")),
+            quoted(program.id(view.node).unwrap_or("")),
+            quoted(block(machine, view.node)),
+            if is_held { ",\"held\":true" } else { "" }
         );
     }
     let _ = write!(

@@ -2,6 +2,7 @@
 //!
 //! Owns the descriptors of one child. What its messages lead to is not known here.
 
+use super::memory::Kills;
 use super::output::Lines;
 use super::python;
 use super::reaper::{Ended, Reaper};
@@ -188,6 +189,8 @@ struct Pipe {
 pub struct Child {
     /// Its process, which leads its session and group.
     pub pid: Pid,
+    /// How often the system had killed for want of memory when it began.
+    pub(super) kills: Kills,
     stdout: Pipe,
     stderr: Pipe,
     channel: Option<UnixStream>,
@@ -287,6 +290,7 @@ pub fn start(
         command.stdin(Stdio::from(OwnedFd::from(theirs)));
         Some(UnixStream::from_std(ours)?)
     };
+    let kills = Kills::now();
     let mut process = command.spawn()?;
     let pid = Pid::from_raw(i32::try_from(process.id()).map_err(io::Error::other)?);
     let end = reaper.watch(pid);
@@ -299,6 +303,7 @@ pub fn start(
     };
     Ok(Child {
         pid,
+        kills,
         stdout: pipe(process.stdout.take().map(OwnedFd::from))?,
         stderr: pipe(process.stderr.take().map(OwnedFd::from))?,
         channel,

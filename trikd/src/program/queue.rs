@@ -71,6 +71,8 @@ pub enum Wish {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shown {
     pub(super) text: Option<(String, Instant)>,
+    /// Where a debugger has stopped it, if the program says so by itself.
+    pub(super) place: Option<String>,
     pub(super) started: u32,
     pub(super) failed: u32,
     pub(super) last_end: String,
@@ -153,6 +155,9 @@ impl Programs {
             }
             None => news::running(news::NONE),
         };
+        if let Some(place) = &shown.place {
+            let _ = writeln!(text, "stopped at {place}");
+        }
         let _ = writeln!(
             text,
             "programs {} started, {} failed",

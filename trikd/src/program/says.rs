@@ -1,11 +1,13 @@
 //! What the running program says, on its way to all clients.
 //!
-//! Owns what is held back, cut and dropped of it, and what counts of a program that is dead. `output` has the measures.
+//! Owns what is held back, cut and dropped of it, what counts of a program that is dead, and what is reported of its rest.
+//! `output` has the measures.
 
 use super::output::{Manner, Message};
+use super::rest;
 use super::{Current, Supervisor};
-use crate::limits;
 use crate::protocol::program::FromProgram;
+use crate::{limits, log};
 use journal::write::Story;
 use std::time::Instant;
 
@@ -58,6 +60,30 @@ impl Supervisor {
         }
     }
 
+    /// How long the order to rest took, and what does not.
+    pub(super) fn report_rest(&self, rested: Result<(), rest::Failure>, rest_us: u128) {
+        let mut shown = self.around.programs.shown.borrow_mut();
+        if shown.rests_us.len() >= limits::RESTS_SHOWN {
+            shown.rests_us.pop_front();
+        }
+        shown.rests_us.push_back(rest_us);
+        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
+        if let Err(why) = rested {
+            tracing::error!(target: log::TREE, "{why}");
+            self.broadcast(&format!("error: {why}"));
+        }
+    }
+
+    /// Where a debugger has stopped the program of now, for the status.
+    pub(super) fn note_place(&self, place: Option<(u32, &str)>) {
+        let place = place.map(|(line, file)| {
+            let end = file.floor_char_boundary(limits::PLACE_BYTES);
+            let name = file[..end].replace(char::is_control, " ");
+            format!("{name} line {line}")
+        });
+        self.around.programs.shown.borrow_mut().place = place;
+    }
+
     /// Of a program that is dead only what it wanted to show counts.
     pub(super) fn hear_last(&self, current: &mut Current, frame: &str) {
         match FromProgram::parse(frame) {
@@ -77,7 +103,8 @@ impl Supervisor {
                 | FromProgram::Changed { .. }
                 | FromProgram::Debug { .. }
                 | FromProgram::DebugLog(_)
-                | FromProgram::Question { .. },
+                | FromProgram::Question { .. }
+                | FromProgram::Stopped(_),
             )
             | None => {}
         }

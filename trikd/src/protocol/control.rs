@@ -1,6 +1,8 @@
 //! Requests of the control port 8888.
 
 use super::program::WhenGone;
+use lang_text::near::nearest;
+use std::fmt;
 
 /// What a client asks for. Prefixes are case sensitive, and the first that fits counts.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -59,8 +61,44 @@ pub enum Request<'a> {
     Stream(&'a str),
     /// The last minutes, as a recording.
     Box,
+    /// Nearly a request of those that the original robots do not have.
+    Malformed(Malformed),
     /// Something else.
     Unknown,
+}
+
+/// A request that is not written as it has to be. Those that the original robots know are not here: they pass over such
+/// a one, and so do we.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Malformed {
+    /// How this one is written.
+    Form(&'static str),
+    /// Its word is none, and this one is near.
+    Near(&'static str),
+}
+
+/// Words of requests that the original robots do not have, and how these are written.
+const FORMS: [(&str, &str); 11] = [
+    ("patch", "patch:end:NAME or patch:refuse:NAME"),
+    ("set", "set:NAME=EXPRESSION"),
+    ("watch", "watch, with nothing behind it"),
+    ("unwatch", "unwatch, with nothing behind it"),
+    ("questions", "questions, with nothing behind it"),
+    ("noquestions", "noquestions, with nothing behind it"),
+    ("answer", "answer:NUMBER:TEXT or answer:NUMBER"),
+    ("debug", "debug:NUMBER ORDER"),
+    ("status", "status, with nothing behind it"),
+    ("stream", "stream:PATTERN,PATTERN;hz=NUMBER"),
+    ("box", "box, with nothing behind it"),
+];
+
+impl fmt::Display for Malformed {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Form(form) => write!(out, "this request is written {form}"),
+            Self::Near(word) => write!(out, "there is no such request; did you mean '{word}'?"),
+        }
+    }
 }
 
 impl<'a> Request<'a> {
@@ -97,23 +135,50 @@ impl<'a> Request<'a> {
             return Self::DirectScript(text);
         }
         if let Some(rest) = frame.strip_prefix(b"patch:") {
-            return Self::patch(rest).unwrap_or(Self::Unknown);
+            return Self::patch(rest).unwrap_or_else(|| Self::strange(frame));
         }
         if let Some(rest) = frame.strip_prefix(b"answer:") {
-            return Self::answer(rest).unwrap_or(Self::Unknown);
+            return Self::answer(rest).unwrap_or_else(|| Self::strange(frame));
         }
         if let Some(wanted) = frame.strip_prefix(b"stream:") {
-            return std::str::from_utf8(wanted).map_or(Self::Unknown, Self::Stream);
+            let wanted = std::str::from_utf8(wanted);
+            return wanted.map_or_else(|_| Self::strange(frame), Self::Stream);
         }
         if let Some(text) = frame.strip_prefix(b"set:") {
-            return Self::Set(text);
+            let name = text.split(|byte| *byte == b'=').next().unwrap_or_default();
+            return match name.trim_ascii().is_empty() {
+                true => Self::strange(frame),
+                false => Self::Set(text),
+            };
         }
         if let Some(rest) = frame.strip_prefix(b"debug:") {
             return Self::debug(rest);
         }
         match frame.strip_prefix(b"direct:") {
             Some(text) => Self::Direct(text),
-            None => Self::Unknown,
+            None => Self::strange(frame),
+        }
+    }
+
+    /// What is no request, but may be meant as one.
+    fn strange(frame: &'a [u8]) -> Self {
+        let letters = frame.iter().take_while(|byte| byte.is_ascii_alphabetic());
+        let word = &frame[..letters.count()];
+        let Ok(word) = std::str::from_utf8(word) else {
+            return Self::Unknown;
+        };
+        let mut forms = FORMS.iter();
+        match forms.find(|(known, _)| known.eq_ignore_ascii_case(word)) {
+            // Those who debug read no other answers.
+            Some(("debug", _)) => Self::Debug {
+                tag: None,
+                order: b"",
+            },
+            Some((_, form)) => Self::Malformed(Malformed::Form(form)),
+            None => {
+                let near = nearest(word, FORMS.iter().map(|(known, _)| *known));
+                near.map_or(Self::Unknown, |word| Self::Malformed(Malformed::Near(word)))
+            }
         }
     }
 
@@ -153,6 +218,78 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_is_nearly_a_request_of_ours_is_malformed_and_what_old_robots_pass_over_is_not() {
+        for (frame, form) in [
+            (&b"patch:maybe:a.qrs"[..], "patch:end:NAME"),
+            (b"patch:a.qrs", "patch:end:NAME"),
+            (b"patch:", "patch:end:NAME"),
+            (b"patch", "patch:end:NAME"),
+            (b"patch:\xff\xfe:a", "patch:end:NAME"),
+            (b"set", "set:NAME=EXPRESSION"),
+            (b"set:", "set:NAME=EXPRESSION"),
+            (b"set: =5", "set:NAME=EXPRESSION"),
+            (b"watch:on", "watch, with nothing"),
+            (b"watch\n", "watch, with nothing"),
+            (b"Watch", "watch, with nothing"),
+            (b"unwatch:", "unwatch, with nothing"),
+            (b"questions 1", "questions, with nothing"),
+            (b"noquestions:", "noquestions, with nothing"),
+            (b"answer:x:1", "answer:NUMBER:TEXT"),
+            (b"answer:", "answer:NUMBER:TEXT"),
+            (b"status ", "status, with nothing"),
+            (b"stream:\xff", "stream:PATTERN"),
+            (b"stream", "stream:PATTERN"),
+            (b"box:1", "box, with nothing"),
+        ] {
+            let request = Request::parse(frame);
+            let Request::Malformed(why) = request else {
+                panic!("{request:?}");
+            };
+            let told = why.to_string();
+            assert!(
+                told.starts_with(&format!("this request is written {form}")),
+                "{told}"
+            );
+        }
+        for (frame, meant) in [
+            (&b"pacth:end:a.qrs"[..], "patch"),
+            (b"wacth", "watch"),
+            (b"anwser:1:2", "answer"),
+            (b"debgu:1 look", "debug"),
+        ] {
+            let near = Request::Malformed(Malformed::Near(meant));
+            assert_eq!(Request::parse(frame), near);
+        }
+        let nothing = Request::Debug {
+            tag: None,
+            order: b"",
+        };
+        assert_eq!(Request::parse(b"debug"), nothing);
+        assert_eq!(Request::parse(b"debug look"), nothing);
+        for old in [
+            &b"run"[..],
+            b"run x.js",
+            b"stop ",
+            b"Stop",
+            b"stop:",
+            b"version:",
+            b"file",
+            b"file:a.js",
+            b"direct",
+            b"directScript",
+            b"data",
+            b"ports",
+            b"sensor:A1",
+            b"hello",
+            b"register:1:2",
+            b"self",
+        ] {
+            let text = String::from_utf8_lossy(old);
+            assert_eq!(Request::parse(old), Request::Unknown, "{text}");
+        }
+    }
+
+    #[test]
     fn requests_are_told_by_their_beginning() {
         let file = Request::File {
             name: b"a.js",
@@ -173,13 +310,10 @@ mod tests {
             name: b"a:b.qrs",
         };
         assert_eq!(Request::parse(b"patch:refuse:a:b.qrs"), patch);
-        assert_eq!(Request::parse(b"patch:maybe:a.qrs"), Request::Unknown);
-        assert_eq!(Request::parse(b"patch:a.qrs"), Request::Unknown);
         assert_eq!(Request::parse(b"set:n=5"), Request::Set(b"n=5"));
         let answer = |number, text| Request::Answer { number, text };
         assert_eq!(Request::parse(b"answer:3:a:b"), answer(3, Some(b"a:b")));
         assert_eq!(Request::parse(b"answer:3"), answer(3, None));
-        assert_eq!(Request::parse(b"answer:x:1"), Request::Unknown);
         assert_eq!(Request::parse(b"questions"), Request::Questions(true));
         for (frame, tag, order) in [
             (

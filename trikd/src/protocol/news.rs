@@ -121,6 +121,10 @@ pub fn is_changed(text: &str, name: &str) -> Option<bool> {
     rest.starts_with(" is not changed: ").then_some(false)
 }
 
+const KILLED_BY: &str = "was killed by ";
+/// Of a program that somebody has killed; what may be the system's doing is said of itself.
+const FROM_OUTSIDE: &str = "signal 9 (SIGKILL) from outside";
+
 /// How a program ended.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum End<'a> {
@@ -132,6 +136,8 @@ pub enum End<'a> {
     Code(i32),
     /// By a signal of this name.
     Killed(&'a str),
+    /// By the system, which had no memory left.
+    Starved,
     /// By order of somebody.
     Stopped(&'a str),
     /// It did what it may not.
@@ -151,10 +157,11 @@ impl End<'_> {
             Self::Well => format!("{name} has ended {after}"),
             Self::Failed => format!("{name} has failed {after}"),
             Self::Code(code) => format!("{name} has failed with exit code {code} {after}"),
-            Self::Killed("SIGKILL") => {
+            Self::Starved => {
                 format!("{name} was killed by SIGKILL {after}: perhaps the memory was short")
             }
-            Self::Killed(signal) => format!("{name} was killed by {signal} {after}"),
+            Self::Killed("SIGKILL") => format!("{name} {KILLED_BY}{FROM_OUTSIDE} {after}"),
+            Self::Killed(signal) => format!("{name} {KILLED_BY}{signal} {after}"),
             Self::Stopped(who) => format!("{name} was stopped by {who} {after}"),
             Self::Greedy(why) => format!("{name} was stopped {after}: {why}"),
         }
@@ -188,8 +195,13 @@ pub fn ended<'a>(text: &'a str, name: &str) -> Option<End<'a>> {
     if let Some(code) = what.strip_prefix("has failed with exit code ") {
         return code.parse().ok().map(End::Code);
     }
-    if let Some(signal) = what.strip_prefix("was killed by ") {
-        return Some(End::Killed(signal));
+    if let Some(signal) = what.strip_prefix(KILLED_BY) {
+        return Some(match signal {
+            // Older robots say so of every one.
+            "SIGKILL" => End::Starved,
+            FROM_OUTSIDE => End::Killed("SIGKILL"),
+            signal => End::Killed(signal),
+        });
     }
     what.strip_prefix("was stopped by ").map(End::Stopped)
 }
@@ -245,6 +257,7 @@ mod tests {
             End::Code(3),
             End::Code(-1),
             End::Killed("SIGKILL"),
+            End::Starved,
             End::Killed("SIGSEGV"),
             End::Stopped("a client"),
             End::Stopped("the day after 3 s"),

@@ -118,6 +118,8 @@ pub enum FromProgram<'a> {
         /// The question, a JSON object.
         json: &'a str,
     },
+    /// Where a debugger has stopped it, the line and the file; none: it goes on.
+    Stopped(Option<(u32, &'a str)>),
 }
 
 /// Instead of a client in [`FromProgram::Debug`]: all that debug.
@@ -146,7 +148,7 @@ pub const TO_PROGRAM: [&str; 15] = [
 ];
 
 /// The words of [`FromProgram`], in the order of the document.
-pub const FROM_PROGRAM: [&str; 11] = [
+pub const FROM_PROGRAM: [&str; 12] = [
     "print",
     "error",
     "info",
@@ -158,6 +160,7 @@ pub const FROM_PROGRAM: [&str; 11] = [
     "debug",
     "debug-log",
     "question",
+    "stopped",
 ];
 
 impl<'a> ToProgram<'a> {
@@ -268,6 +271,8 @@ impl<'a> FromProgram<'a> {
             Self::Debug { client, json } => format!("debug:{client} {json}"),
             Self::DebugLog(json) => format!("debug-log:{json}"),
             Self::Question { number, json } => format!("question:{number} {json}"),
+            Self::Stopped(Some((line, file))) => format!("stopped:{line} {file}"),
+            Self::Stopped(None) => "stopped:".to_owned(),
         };
         text.into_bytes()
     }
@@ -307,6 +312,11 @@ impl<'a> FromProgram<'a> {
                     number: number.parse().ok()?,
                     json,
                 }
+            }
+            "stopped" if rest.is_empty() => Self::Stopped(None),
+            "stopped" => {
+                let (line, file) = rest.split_once(' ')?;
+                Self::Stopped(Some((line.parse().ok()?, file)))
             }
             _ => return None,
         })
@@ -372,6 +382,7 @@ mod tests {
                 FromProgram::Debug { client: u32::try_from(text.len()).unwrap(), json: text },
                 FromProgram::DebugLog(text),
                 FromProgram::Question { number: u32::try_from(text.len()).unwrap(), json: text },
+                FromProgram::Stopped((text.len() % 2 == 0).then_some((7, text))),
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(FromProgram::parse(&payload), Some(said));
@@ -399,7 +410,7 @@ mod tests {
         }
         for word in FROM_PROGRAM {
             let second = match word {
-                "debug" | "question" => "1 x",
+                "debug" | "question" | "stopped" => "1 x",
                 _ => "1:x",
             };
             let payload = format!("{word}:{second}");

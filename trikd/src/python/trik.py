@@ -1539,12 +1539,35 @@ def _show_failure():
             pass
 
 
+_told_stop = ''
+
+
+def _tell_stop(is_stopped=True):
+    """Tells where a debugger has stopped the program, for who asks the robot; the thread that began it comes first."""
+    global _told_stop
+    told = ''
+    if is_stopped:
+        folder = os.path.dirname((_direct_space or {}).get('__file__', ''))
+        frames = sys._current_frames()
+        main = frames.pop(threading.main_thread().ident, None)
+        for frame in [main, *frames.values()]:
+            while frame and os.path.dirname(frame.f_code.co_filename) != folder:
+                frame = frame.f_back
+            if frame:
+                told = '%d %s' % (frame.f_lineno, os.path.basename(frame.f_code.co_filename))
+                break
+    if told != _told_stop and _channel:
+        _told_stop = told
+        _channel.send('stopped', told)
+
+
 def _hold(stop):
     """Motors rest because a debugger has stopped all threads; what it calls when it has, and again until all rest.
 
     True: all do. From here on they stay so: what threads tell them counts when they go on. Stops have numbers from 1 on.
     """
     global _is_held, _stop_held
+    _tell_stop()
     # Nobody waits long for a thread whose motor does not answer: the others are to rest.
     is_closed = _gate.acquire(timeout=0.5)
     try:
@@ -1584,6 +1607,7 @@ def _go_on(stop):
         if _stop_held > stop:
             return
         _is_held = False
+        _tell_stop(False)
         while _resting:
             place, told = _resting.popitem()
             try:

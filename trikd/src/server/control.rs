@@ -137,6 +137,14 @@ impl Session {
         }
     }
 
+    /// This client is told where a diagram is, or no more.
+    fn watch(&self, is_wanted: bool) {
+        self.client.watch(match is_wanted {
+            true => Watching::Lines,
+            false => Watching::No,
+        });
+    }
+
     /// What a person says to a question of the diagram.
     async fn answer(&self, number: u32, said: Option<&[u8]>) {
         if self.may_control() {
@@ -191,6 +199,7 @@ impl Handler for Session {
         match request {
             // What is unknown has no answer, as on the original robots.
             Request::Keepalive | Request::Unknown => {}
+            Request::Malformed(why) => self.error(&why.to_string()),
             Request::Version => self.client.outbox.send(VERSION),
             Request::ConfigVersion => {
                 let answer = format!("configVersion: {}", self.control.config_version);
@@ -199,14 +208,7 @@ impl Handler for Session {
             Request::Status => self.status().await,
             Request::Stream(wanted) => self.sending.stream(wanted),
             Request::Box => self.sending.last_minutes(),
-            Request::Watch(is_wanted) => {
-                let watching = if is_wanted {
-                    Watching::Lines
-                } else {
-                    Watching::No
-                };
-                self.client.watch(watching);
-            }
+            Request::Watch(is_wanted) => self.watch(is_wanted),
             // Anyone who sees danger may stop the robot.
             Request::Stop => self.command(Command::Stop("a client")).await,
             Request::File { name, content } => {

@@ -438,6 +438,7 @@ fn what_is_wrong_changes_nothing_and_says_where() {
     assert!(told.ends_with("it has: n; did you mean 'n'?"), "{told}");
     for unknown in ["patch:count.qrs", "patch:maybe:count.qrs", "patch:"] {
         client.send(unknown);
+        client.until("error: this request is written patch:end:NAME or patch:refuse:NAME");
     }
     let before = printed(&mut client);
     assert_eq!(printed(&mut client), before + 1);

@@ -11,7 +11,7 @@ use lang_expr::reserved::SENSORS;
 use lang_expr::tree::{Node as Part, Tree};
 use lang_expr::words::{Fault, Reason};
 use lang_expr::{Kind, Names, Source, Wanted};
-use lang_text::problem::{Place, Position, Problem, Words};
+use lang_text::problem::{Place, Position, Problem, Words, position};
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
@@ -152,10 +152,14 @@ pub(crate) fn mistakes_of_line(
     let mut problems = Vec::new();
     let mut rest = line;
     while let Some((before, after)) = rest.split_once('{') {
+        let begins = line.len() - rest.len() + before.len() + 1;
         let Some((expression, after_it)) = after.split_once('}') else {
+            problems.push(at_column(line, begins - 1, words::open_brace()));
             break;
         };
-        let begins = line.len() - rest.len() + before.len() + 1;
+        if expression.trim().is_empty() {
+            problems.push(at_column(line, begins - 1, words::empty_braces()));
+        }
         let begins = line[..begins].chars().count() as u32;
         problems.extend(mistakes(expression).into_iter().map(|mut problem| {
             if let Some(at) = problem.place.position.as_mut().filter(|at| at.line == 1) {
@@ -167,6 +171,13 @@ pub(crate) fn mistakes_of_line(
     }
     problems.truncate(lang_expr::limits::EXPRESSION_PROBLEMS_MAX);
     problems
+}
+
+/// An error at a byte of a line.
+fn at_column(line: &str, at: usize, words: Words) -> Problem {
+    let mut problem = Problem::error(words);
+    problem.place.position = Some(position(line, at));
+    problem
 }
 
 /// What would change the run, or is not known to a program that does not ask for it.

@@ -12,6 +12,7 @@ use crate::machine::trace::Trace;
 use crate::machine::view::Doing;
 use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem};
+use std::collections::BTreeSet;
 
 /// A program with its debugger, for people elsewhere.
 #[derive(Clone, Debug)]
@@ -53,8 +54,10 @@ pub enum Refused {
     Breakpoint(NoBreakpoint),
     /// There is no breakpoint with this number, or none at all.
     NoBreakpoint(Option<u32>),
-    /// There is no thread with this name, or none at all.
-    NoThread(Option<Box<str>>),
+    /// No thread lives.
+    NoThread,
+    /// There is no thread with this name; those that there are.
+    NoSuchThread(Box<str>, Vec<Box<str>>),
     /// This thread is not held.
     NotHeld(Box<str>),
     /// This thread is held, and makes no step.
@@ -80,7 +83,8 @@ impl Refused {
             Self::NotStopped => words::not_stopped(),
             Self::Ended => words::ended(),
             Self::NoBreakpoint(number) => words::no_breakpoint(*number),
-            Self::NoThread(name) => words::no_thread(name.as_deref()),
+            Self::NoThread => words::no_thread(),
+            Self::NoSuchThread(name, there) => words::no_such_thread(name, there),
             Self::NotHeld(name) => words::not_held(name),
             Self::Held(name) => words::held(name),
         };
@@ -200,14 +204,8 @@ impl Desk {
                 self.search();
             }
             Order::Present => session.to_present(),
-            Order::Hold(name) => {
-                session.hold(name).map_err(Refused::Breakpoint)?;
-            }
-            Order::Release(name) => {
-                if !session.release(name) {
-                    return Err(Refused::NotHeld(name.clone()));
-                }
-            }
+            Order::Hold(name) => self.hold(name)?,
+            Order::Release(name) => self.release(name)?,
             Order::Break(point) => {
                 let number = session.add(point.clone()).map_err(Refused::Breakpoint)?;
                 return Ok(object().plain("number", number));
@@ -353,8 +351,39 @@ impl Desk {
         if let Some(view) = found.as_ref().filter(|view| view.doing == Doing::Held) {
             return Err(Refused::Held(view.name.into()));
         }
-        let number = found.map(|view| view.number);
-        number.ok_or_else(|| Refused::NoThread(name.map(Into::into)))
+        match (found.map(|view| view.number), name) {
+            (Some(number), _) => Ok(number),
+            (None, None) => Err(Refused::NoThread),
+            (None, Some(name)) => {
+                let there: BTreeSet<&str> = machine.views().map(|view| view.name).collect();
+                Err(no_such_thread(name, &there))
+            }
+        }
+    }
+
+    /// Holds a thread that lives, or that the program may begin.
+    fn hold(&mut self, name: &str) -> Result<(), Refused> {
+        if let Phase::Ended { .. } = self.session.phase() {
+            return Err(Refused::Ended);
+        }
+        let machine = self.session.live();
+        let mut there: BTreeSet<&str> = machine.program().thread_names().collect();
+        there.extend(machine.views().map(|view| view.name));
+        if !there.contains(name) {
+            return Err(no_such_thread(name, &there));
+        }
+        self.session.hold(name).map_err(Refused::Breakpoint)?;
+        // Others look on.
+        self.tell_again();
+        Ok(())
+    }
+
+    fn release(&mut self, name: &str) -> Result<(), Refused> {
+        if !self.session.release(name) {
+            return Err(Refused::NotHeld(name.into()));
+        }
+        self.tell_again();
+        Ok(())
     }
 
     /// A search has begun. A short one is done at once; of a longer one the answer says that it goes on, and its end is told
@@ -376,6 +405,11 @@ fn found(is_found: bool, number: Option<u32>) -> Result<Object, Refused> {
         true => Ok(object()),
         false => Err(Refused::NoBreakpoint(number)),
     }
+}
+
+fn no_such_thread(name: &str, there: &BTreeSet<&str>) -> Refused {
+    let there = there.iter().take(limits::THREADS_NAMED_MAX);
+    Refused::NoSuchThread(name.into(), there.map(|name| (*name).into()).collect())
 }
 
 fn object() -> Object {

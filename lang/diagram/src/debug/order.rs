@@ -83,6 +83,9 @@ const A_BLOCK: &str = "the id of a block";
 const A_VARIABLE: &str = "the name of a variable";
 const A_THREAD: &str = "the name of a thread";
 const A_NUMBER: &str = "the number of a breakpoint";
+const A_HIT: &str = "a number of hits from 1 on after `from`, such as from 5";
+const A_CONDITION: &str = "a condition after `if`, such as if n > 3";
+const A_LINE: &str = "a text after `log`, such as log n is {n}";
 
 impl Order {
     /// What a text asks for.
@@ -331,7 +334,8 @@ fn breakpoint(
         match word {
             "from" => {
                 let hits = words.next().and_then(|word| word.parse().ok());
-                point.from_hit = hits.ok_or(NoOrder::Lacks("a number of hits after `from`"))?;
+                let hits = hits.filter(|hits| *hits > 0);
+                point.from_hit = hits.ok_or(NoOrder::Lacks(A_HIT))?;
             }
             "once" => point.is_once = true,
             "disabled" => point.is_disabled = true,
@@ -339,11 +343,17 @@ fn breakpoint(
         }
     }
     for line in more.lines() {
-        match line.split_once(' ') {
-            Some(("if", condition)) => point.condition = condition.trim().into(),
-            Some(("log", text)) => point.log = text.trim().into(),
-            Some(_) | None => return Err(NoOrder::Strange(shortened(line))),
+        let (word, text) = line.split_once(' ').unwrap_or((line, ""));
+        let (part, what) = match word {
+            "if" => (&mut point.condition, A_CONDITION),
+            "log" => (&mut point.log, A_LINE),
+            _ => return Err(NoOrder::Strange(shortened(line))),
+        };
+        // Of two lines one would be forgotten.
+        if !part.is_empty() {
+            return Err(NoOrder::Strange(shortened(line)));
         }
+        *part = some(text.trim(), what)?;
     }
     Ok(point)
 }
@@ -424,6 +434,15 @@ mod tests {
                 "this order needs the number of a breakpoint",
             ),
             ("break b from x", "this order needs a number of hits"),
+            (
+                "break b from 0",
+                "this order needs a number of hits from 1 on",
+            ),
+            ("break b from", "this order needs a number of hits"),
+            ("break b\nif ", "this order needs a condition after `if`"),
+            ("break b\nif", "this order needs a condition after `if`"),
+            ("watch n\nlog  ", "this order needs a text after `log`"),
+            ("break b\nif 1\nif 2", "'if 2' cannot be in this order"),
             ("break b often", "'often' cannot be in this order"),
             ("break b\nwhile 1", "'while 1' cannot be in this order"),
             ("continue\nif 1", "'if 1' cannot be in this order"),

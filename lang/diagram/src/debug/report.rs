@@ -61,6 +61,13 @@ pub fn state(session: &Session, locale: Locale) -> String {
     let threads = machine.views().map(|view| thread(machine, &view));
     let threads = bounded(threads, limits::TOLD_THREADS_BYTES);
     told = listed(told, "threads", (threads, machine.views().count()));
+    let held: Vec<_> = session.held().collect();
+    if !held.is_empty() {
+        let names = held.iter();
+        let names = names.map(|name| quoted(name, limits::TOLD_CHARACTERS_MAX));
+        let names = bounded(names, limits::TOLD_THREADS_BYTES);
+        told = listed(told, "held", (names, held.len()));
+    }
     let all = machine.variables().count();
     told = listed(told, "variables", (variables(machine), all));
     if let Some((from_ms, bytes)) = session.kept() {

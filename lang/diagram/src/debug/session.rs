@@ -307,13 +307,19 @@ impl Session {
         self.debugger.hold_thread(name)
     }
 
-    /// Lets a thread go on that was held alone, with the next step; false if it was not held.
+    /// Names of the threads that are held alone, or will be at their next block.
+    pub fn held(&self) -> impl Iterator<Item = &str> {
+        self.debugger.held_alone.iter().map(|name| &**name)
+    }
+
+    /// Lets a thread go on that was held alone, with the next step, or was to be; false if it was neither.
     pub fn release(&mut self, name: &str) -> bool {
-        self.debugger.let_thread(name);
+        let was_meant = self.debugger.let_thread(name);
         self.changes();
         let number = self.machine.views().find(|view| view.name == name);
         let number = number.map(|view| view.number);
-        number.is_some_and(|number| self.machine.release(number))
+        let was_held = number.is_some_and(|number| self.machine.release(number));
+        was_meant || was_held
     }
 
     /// Assigns a variable the value of an expression.

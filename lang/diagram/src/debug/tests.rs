@@ -263,7 +263,7 @@ fn conditions_hits_and_lines_are_heeded() {
     };
     desk.session.add(point.clone()).unwrap();
     let line = Breakpoint {
-        log: "n is {n}, twice {n * 2}, {1 / (n - 8)} {".into(),
+        log: "n is {n}, twice {n * 2}, {1 / (n - 8)} }".into(),
         ..Breakpoint::before(ids[3].as_str())
     };
     desk.session.add(line).unwrap();
@@ -272,7 +272,7 @@ fn conditions_hits_and_lines_are_heeded() {
     assert_eq!(desk.variable("n"), "8");
     let (lines, lost) = desk.session.debugger().take_lines();
     assert_eq!((lines.len(), lost), (8, 0));
-    assert_eq!(lines[7], "n is 8, twice 16, <Division by zero> {");
+    assert_eq!(lines[7], "n is 8, twice 16, <Division by zero> }");
     let wrong = Breakpoint {
         condition: "1 / (n - 10) > 0".into(),
         ..point

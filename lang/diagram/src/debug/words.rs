@@ -108,14 +108,22 @@ pub(super) fn no_breakpoint(number: Option<u32>) -> Words {
     }
 }
 
-pub(super) fn no_thread(name: Option<&str>) -> Words {
-    match name {
-        Some(name) => Words::new(
-            format!("there is no thread '{name}'"),
-            format!("потока '{name}' нет"),
-        ),
-        None => Words::new("no thread lives", "ни один поток не выполняется"),
+pub(super) fn no_thread() -> Words {
+    Words::new("no thread lives", "ни один поток не выполняется")
+}
+
+pub(super) fn no_such_thread(name: &str, there: &[Box<str>]) -> Words {
+    if there.is_empty() {
+        return Words::new(
+            format!("there is no thread '{name}': no thread lives"),
+            format!("потока '{name}' нет: ни один поток не выполняется"),
+        );
     }
+    let there = there.join(", ");
+    Words::new(
+        format!("there is no thread '{name}'; threads are {there}"),
+        format!("потока '{name}' нет; потоки: {there}"),
+    )
 }
 
 pub(super) fn not_held(name: &str) -> Words {

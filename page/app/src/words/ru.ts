@@ -107,6 +107,10 @@ export const ru: Words = {
       '{name}: завершена системой (SIGKILL) через {seconds} с: возможно, не хватило памяти',
     ],
     [
+      '{name} was killed by signal 9 (SIGKILL) from outside after {seconds} s',
+      '{name}: завершена извне сигналом 9 (SIGKILL) через {seconds} с',
+    ],
+    [
       '{name} was killed by {signal} after {seconds} s',
       '{name}: завершена сигналом {signal} через {seconds} с',
     ],

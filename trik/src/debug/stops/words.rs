@@ -20,6 +20,22 @@ pub(crate) fn ends_by_quit() -> Words {
     Words::new("\ntype quit to end", "\nчтобы закончить, введите quit")
 }
 
+/// Of a question, by its words or the variable that is asked for.
+pub(crate) fn nobody_answers(what: &str) -> Words {
+    Words::new(
+        format!("{what} is asked for, and nobody is there to answer: --inputs FILE has answers"),
+        format!("запрошено значение {what}, а ответить некому: ответы бывают в --inputs FILE"),
+    )
+}
+
+/// Of who answered until now.
+pub(crate) fn answers_end() -> Words {
+    Words::new(
+        "nobody is there to answer any more: what a question proposes counts, or there is no answer",
+        "отвечать больше некому: действует то, что предлагает вопрос, или ответа нет",
+    )
+}
+
 pub(crate) fn scene_unknown() -> Words {
     Words::new(
         "where a robot is can be seen, and is not known here",
@@ -269,6 +285,11 @@ pub(crate) fn waits_for(what: &str) -> Words {
         what => what,
     };
     Words::new(format!("waits for {what}"), format!("ждёт: {russian}"))
+}
+
+/// Of threads by their names, with commas between them.
+pub(crate) fn held(names: &str) -> Words {
+    Words::new(format!("held: {names}"), format!("задержаны: {names}"))
 }
 
 /// By its word in the protocol.

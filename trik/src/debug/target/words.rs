@@ -57,7 +57,7 @@ fn whole(text: &str) -> Option<&'static str> {
 }
 
 /// Sentences with names and numbers, which stand for `{}`, in English and Russian; the first that fits counts.
-const TEMPLATES: [[&str; 2]; 35] = [
+const TEMPLATES: [[&str; 2]; 36] = [
     ["{} is not changed: {}", "{} не изменена: {}"],
     ["{} is changed: {}", "{} изменена: {}"],
     ["{} has started", "{} запущена"],
@@ -73,6 +73,10 @@ const TEMPLATES: [[&str; 2]; 35] = [
     [
         "{} was killed by SIGKILL after {} s: perhaps the memory was short",
         "{} завершена сигналом SIGKILL через {} с: возможно, не хватило памяти",
+    ],
+    [
+        "{} was killed by signal 9 (SIGKILL) from outside after {} s",
+        "{} завершена извне сигналом 9 (SIGKILL) через {} с",
     ],
     [
         "{} was killed by {} after {} s",
@@ -252,6 +256,13 @@ pub(crate) fn no_such_line() -> Words {
     )
 }
 
+pub(crate) fn empty_condition() -> Words {
+    Words::new(
+        "--if needs a condition, such as --if 'n > 3'",
+        "для --if нужно условие, например --if 'n > 3'",
+    )
+}
+
 pub(crate) fn lines_need_file() -> Words {
     Words::new(
         "lines and labels are those of --file FILE",
@@ -296,8 +307,12 @@ mod tests {
                 "a b.js закончилась ошибкой с кодом 3 через 1.2 с",
             ),
             (
-                End::Killed("SIGKILL"),
+                End::Starved,
                 "a b.js завершена сигналом SIGKILL через 1.2 с: возможно",
+            ),
+            (
+                End::Killed("SIGKILL"),
+                "a b.js завершена извне сигналом 9 (SIGKILL) через 1.2 с",
             ),
             (
                 End::Killed("SIGSEGV"),

@@ -126,7 +126,7 @@ impl Editor {
         answer["message"].as_str().expect("why").to_owned()
     }
 
-    fn launch(&mut self, board: &Board, more: Value) {
+    pub(super) fn launch(&mut self, board: &Board, more: Value) {
         self.launch_file(board, "count.qrs", more);
     }
 
@@ -171,7 +171,7 @@ impl Editor {
     }
 }
 
-fn board() -> Board {
+pub(super) fn board() -> Board {
     let board = Board::new();
     board.file("count.qrs", counting());
     board
@@ -512,10 +512,7 @@ fn rubbish_is_told_and_the_talk_goes_on() {
             .bad("launch", json!({"program": "/nowhere.qrs"}))
             .contains("/nowhere.qrs")
     );
-    editor.launch(
-        &board,
-        json!({"stopOnEntry": true, "seed": -1, "speed": "x"}),
-    );
+    editor.launch(&board, json!({"stopOnEntry": true}));
     editor.good("configurationDone", json!({}));
     editor.event("stopped");
     for (command, arguments) in [

@@ -67,6 +67,11 @@ pub(super) fn top(editor: &mut Editor, stopped: &Value) -> (Value, Value) {
     (thread, stack["stackFrames"][0].take())
 }
 
+fn status(robot: &Reachable) -> String {
+    let home = &robot.robot.home;
+    home.run(&["status", "--robot", robot.ip()]).good()
+}
+
 #[test]
 fn a_program_in_python_stops_at_lines_and_its_motors_rest_there() {
     let Some((python, robot)) = debugged() else {
@@ -87,6 +92,9 @@ fn a_program_in_python_stops_at_lines_and_its_motors_rest_there() {
         (&frame["line"], &frame["name"]),
         (&json!(3), &json!("double"))
     );
+    eventually("a status that says where", || {
+        status(&robot).contains(": stopped at x.py line 3")
+    });
     let file = robot.robot.home.0.path("x.py");
     assert_eq!(frame["source"]["path"], json!(file));
     let asked = json!({"expression": "k * 10", "frameId": frame["id"], "context": "watch"});
@@ -118,6 +126,7 @@ fn a_program_in_python_stops_at_lines_and_its_motors_rest_there() {
     eventually("a motor at rest", || duty(&robot) == 0);
     editor.good("continue", json!({"threadId": thread}));
     eventually("a motor that goes on", || duty(&robot) != 0);
+    assert!(!status(&robot).contains("stopped at"));
     let threads = editor.good("threads", json!({}));
     assert_eq!(
         threads["threads"].as_array().map(Vec::len),

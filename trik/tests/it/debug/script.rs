@@ -68,6 +68,9 @@ fn a_program_in_javascript_pauses_with_its_motors_and_goes_on() {
         editor.good("pause", json!({"threadId": 1}));
         assert_eq!(editor.event("stopped")["reason"], "pause");
         eventually("motors at rest", || robot.rests());
+        let status = robot.robot.home.run(&["status", "--robot", robot.ip()]);
+        let status = status.good();
+        assert!(status.contains(": pause, line 2\n"), "{status}");
         let threads = editor.good("threads", json!({}));
         let named = json!({"threads": [{"id": 1, "name": "main"}, {"id": 2, "name": "busy"}]});
         assert_eq!(threads, named);

@@ -32,7 +32,7 @@ fn others_hear_who_is_in_control_and_where_the_program_is_stopped() {
     let line = |part: &str| status.lines().find(|line| line.contains(part));
     let stopped = line(": stopped ").expect("where it is stopped");
     assert!(
-        stopped.contains(" s, thread main: breakpoint 1, main, Timer "),
+        stopped.ends_with(" s, thread main: breakpoint 1, main, Timer"),
         "{status}"
     );
     let control = line(" is in control").filter(|line| line.contains(": debugger 127."));

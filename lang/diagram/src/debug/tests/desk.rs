@@ -9,6 +9,8 @@ use crate::limits;
 use crate::lower::{World, lower};
 use crate::machine::trace::Deaf;
 use crate::machine::{Machine, Options, STEP_MS};
+use crate::project::Project;
+use crate::sketch::Sketch;
 use crate::stand_in::StandIn;
 use lang_text::problem::Locale;
 
@@ -47,9 +49,13 @@ fn stage() -> (Stage, Vec<String>) {
 
 fn stage_of(body: &str) -> (Stage, Vec<String>) {
     let (project, ids) = counting(body, "100");
-    let program = Rc::new(lower(&project, World::default()).unwrap().program);
+    (stage_with(&project), ids)
+}
+
+fn stage_with(project: &Project) -> Stage {
+    let program = Rc::new(lower(project, World::default()).unwrap().program);
     let machine = Machine::new(program, Options::default());
-    let stage = Stage {
+    Stage {
         desk: Desk::new(
             Session::alone(machine),
             Locale::English,
@@ -58,8 +64,7 @@ fn stage_of(body: &str) -> (Stage, Vec<String>) {
         robot: robot(),
         now: 0,
         tag: 0,
-    };
-    (stage, ids)
+    }
 }
 
 #[test]
@@ -183,6 +188,54 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
             .order("step over nobody")
             .contains("there is no thread 'nobody'")
     );
+}
+
+/// Two threads that count, `main` and `other`, the second of which begins after a while.
+fn two_threads() -> Stage {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let set = sketch.block("Function", &[("Body", "a = 0; b = 0")]);
+    let first = sketch.block("Timer", &[("Delay", "100")]);
+    let fork = sketch.block("Fork", &[]);
+    sketch.chain(&[start, set, first, fork]);
+    for (name, body) in [("main", "a = a + 1"), ("other", "b = b + 1")] {
+        let count = sketch.block("Function", &[("Body", body)]);
+        let wait = sketch.block("Timer", &[("Delay", "50")]);
+        sketch.guarded(fork, count, name);
+        sketch.chain(&[count, wait, count]);
+    }
+    stage_with(&sketch.project())
+}
+
+#[test]
+fn a_thread_that_is_held_is_known_to_all_and_one_that_cannot_be_is_refused() {
+    let mut stage = two_threads();
+    stage.order("attach");
+    stage.run(2);
+    let refused = stage.order("hold othr");
+    assert!(
+        refused.contains("\"why\":\"there is no thread 'othr'; threads are main, other\""),
+        "{refused}"
+    );
+    // It has not begun yet.
+    let held = stage.order("hold other");
+    assert!(held.contains("\"held\":[\"other\"]"), "{held}");
+    let news = stage.run(1).join("\n");
+    assert!(news.contains("\"held\":[\"other\"]"), "{news}");
+    stage.run(30);
+    let look = stage.order("look");
+    assert!(look.contains("\"does\":\"held\""), "{look}");
+    assert!(stage.order("evaluate b").contains("\"value\":\"0\""));
+    let released = stage.order("release other");
+    assert!(!released.contains("\"held\":["), "{released}");
+    let news = stage.run(1).join("\n");
+    assert!(news.contains("\"state\":\"running\""), "{news}");
+    assert!(!news.contains("\"held\":["), "{news}");
+    // One that has not come to a block can be released too.
+    stage.order("hold main");
+    assert!(stage.order("release main").contains("\"done\":true"));
+    let again = stage.order("release main");
+    assert!(again.contains("the thread 'main' is not held"), "{again}");
 }
 
 #[test]

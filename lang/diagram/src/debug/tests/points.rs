@@ -85,7 +85,19 @@ fn a_line_is_checked_in_its_braces() {
         panic!("{refused:?}");
     };
     assert!(told(&problems).contains("1:21 "), "{}", told(&problems));
-    for good in ["n is {n}", "{", "{}", "}{", "{n} and {"] {
+    for (bad, why) in [
+        ("n is {n", "1:6 This brace is not closed: write }"),
+        ("{n} and {", "1:9 This brace is not closed"),
+        ("{}", "1:1 There is nothing between these braces"),
+        ("n {n}, {  }", "1:8 There is nothing between these braces"),
+    ] {
+        let refused = desk.session.add(line(bad));
+        let Err(NoBreakpoint::Line(problems)) = refused else {
+            panic!("{bad}: {refused:?}");
+        };
+        assert!(told(&problems).starts_with(why), "{}", told(&problems));
+    }
+    for good in ["n is {n}", "}", "} {n}", "{ n }"] {
         desk.session.add(line(good)).unwrap();
     }
 }
