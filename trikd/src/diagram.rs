@@ -17,6 +17,7 @@ mod readings;
 mod robot;
 mod source;
 mod watch;
+mod words;
 
 use crate::brick::Brick;
 use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
@@ -53,7 +54,7 @@ pub struct Diagram {
 pub fn engine() -> impl Engine {
     let named = |name: &str| std::env::var(name).unwrap_or_default();
     Diagram {
-        locale: locale(&named("TRIK_LANGUAGE")),
+        locale: of_environment(),
         patience: Duration::from_secs(named("TRIK_ANSWER_S").parse().unwrap_or(limits::ANSWER_S)),
         compat: if named("TRIK_COMPAT") == settings::Compat::Fixed.name() {
             Compat::Fixed
@@ -61,6 +62,11 @@ pub fn engine() -> impl Engine {
             Compat::Studio
         },
     }
+}
+
+/// The language in which a program says what it says by itself, as the daemon names it.
+pub fn of_environment() -> Locale {
+    locale(&std::env::var("TRIK_LANGUAGE").unwrap_or_default())
 }
 
 /// The language of messages by its name, as `LANG` has it: Russian if it begins with `ru`, else English.
@@ -87,7 +93,7 @@ impl Engine for Diagram {
             Start::Debugged(path) => (path, true),
             Start::Script(_) | Start::Direct => return Err(Failure::NoFile),
         };
-        let mut robot = Robot::new(brick, host, self.patience);
+        let mut robot = Robot::new(brick, host, self.patience, self.locale);
         let mut watch = Watch::new(self.locale);
         let machine = match self.load(&path, host, &mut watch)? {
             Loaded::Diagram(machine) => *machine,
@@ -280,22 +286,28 @@ fn hear(
         Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-        Incoming::Patch(when_gone, path) => {
+        Incoming::Patch(when_gone, path, locale) => {
             let (session, mut driven) = diagram.parts(robot);
-            let answer = live::patch(session, (when_gone, &path), &mut driven, watch);
+            let version = (when_gone, &*path, locale);
+            let answer = live::patch(session, version, &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
             diagram.changed();
             diagram.report(now, true, host)?;
         }
-        Incoming::Set(text) => {
+        Incoming::Set(text, locale) => {
             let (session, mut driven) = diagram.parts(robot);
-            let answer = live::set(session, &text, &mut driven, watch);
+            let answer = live::set(session, (&text, locale), &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
             diagram.changed();
             diagram.report(now, true, host)?;
         }
-        Incoming::Debug { client, tag, order } => {
-            let answer = diagram.order((tag, &order), now, robot, watch);
+        Incoming::Debug {
+            client,
+            tag,
+            locale,
+            order,
+        } => {
+            let answer = diagram.answer((tag, &order), locale, now, (robot, watch));
             host.debug(client, &answer)?;
             diagram.report(now, true, host)?;
         }
@@ -304,7 +316,7 @@ fn hear(
             diagram.report(now, true, host)?;
         }
         // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
-        Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
+        Incoming::Direct(_) => host.error(words::no_direct().in_locale(watch.locale()))?,
         // The caller knows.
         Incoming::Gone => {}
     }

@@ -39,20 +39,19 @@ impl Answer {
     }
 }
 
-/// Replaces the program that runs by the save in a file, whole or not at all.
+/// Replaces the program that runs by the save in a file, whole or not at all; the answer is in this language.
 pub(super) fn patch(
     session: &mut Session,
-    (when_gone, path): (WhenGone, &Path),
+    (when_gone, path, locale): (WhenGone, &Path, Locale),
     robot: &mut dyn Brick,
     watch: &mut Watch,
 ) -> Answer {
-    let locale = watch.locale();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let refused = |why: &Refused| Answer::unchanged(&name, &explained(why, locale));
     let save = match read_save(path).and_then(|bytes| opened(&bytes, locale)) {
         Ok(save) => save,
         Err(why @ (NoDiagram::Unread(_) | NoDiagram::TooLong(_) | NoDiagram::Problems(_))) => {
-            return Answer::unchanged(&name, &why.to_string());
+            return Answer::unchanged(&name, &why.in_locale(locale));
         }
     };
     let version = match Version::of(&save.project, World::Robot) {
@@ -75,10 +74,10 @@ fn explained(why: &Refused, locale: Locale) -> String {
     }
 }
 
-/// Assigns a variable: `NAME=EXPRESSION`.
+/// Assigns a variable: `NAME=EXPRESSION`; the answer is in this language.
 pub(super) fn set(
     session: &mut Session,
-    text: &str,
+    (text, locale): (&str, Locale),
     robot: &mut dyn Brick,
     watch: &mut Watch,
 ) -> Answer {
@@ -90,6 +89,6 @@ pub(super) fn set(
             let value = value.map_or_else(String::new, |value| value.printed().to_string());
             Answer::changed(name, &format!("{name} = {value}"))
         }
-        Err(why) => Answer::unchanged(name, &why.in_locale(watch.locale())),
+        Err(why) => Answer::unchanged(name, &why.in_locale(locale)),
     }
 }

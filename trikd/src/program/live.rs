@@ -3,12 +3,13 @@
 //! Owns which diagram is meant, and what clients hear if none runs. The diagram answers by itself.
 
 use super::child::Language;
-use super::queue::{Meeting, Wish};
+use super::queue::{Heard, Meeting, Wish};
 use super::{Cause, Current, Supervisor};
 use crate::clients::debugging::OrderId;
 use crate::protocol::news;
 use crate::protocol::program::{ALL, ToProgram, WhenGone};
-use crate::{limits, log};
+use crate::{diagram, limits, log};
+use lang_text::problem::Locale;
 use std::path::Path;
 
 impl Supervisor {
@@ -24,8 +25,14 @@ impl Supervisor {
         self.last.has_debugger() && runs.is_some_and(|current| current.child.runs())
     }
 
+    /// The language of an answer.
+    fn locale(&self, heard: Heard) -> Locale {
+        heard.unwrap_or_else(|| diagram::locale(&self.around.settings.language))
+    }
+
     /// A new version for the diagram that runs, which answers by itself.
-    pub(super) fn patch(&mut self, when_gone: WhenGone, path: &Path) {
+    pub(super) fn patch(&mut self, when_gone: WhenGone, path: &Path, heard: Heard) {
+        let locale = self.locale(heard);
         let name = self.name_of(path);
         let runs = match &self.current {
             Some(current) if self.runs_diagram() => Some(current.name.clone()),
@@ -38,6 +45,7 @@ impl Supervisor {
             Some(_)
                 if self.send(ToProgram::Patch {
                     when_gone,
+                    locale,
                     path: &file,
                 }) =>
             {
@@ -71,8 +79,9 @@ impl Supervisor {
     }
 
     /// An assignment for the diagram that runs, `NAME=EXPRESSION`.
-    pub(super) fn set(&mut self, text: &str) {
-        if !self.runs_diagram() || !self.send(ToProgram::Set(text)) {
+    pub(super) fn set(&mut self, text: &str, heard: Heard) {
+        let locale = self.locale(heard);
+        if !self.runs_diagram() || !self.send(ToProgram::Set { locale, text }) {
             let name = text.split('=').next().unwrap_or_default().trim();
             self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
         }
@@ -98,7 +107,8 @@ impl Supervisor {
         let name = self.name_of(path);
         let file = path.display().to_string();
         let first = ToProgram::Debugged(&file);
-        self.start(Language::of(path), name, Some(path.to_owned()), first);
+        let language = Language::of(path);
+        self.start(language, name, Some(path.to_owned()), (first, asked.locale));
         match self.current {
             Some(_) => self.around.clients.debug_done(asked),
             None => self.refuse(asked, news::NOT_STARTED),
@@ -115,6 +125,7 @@ impl Supervisor {
             secret: place.secret.as_deref(),
             path: &file,
         };
+        let first = (first, asked.locale);
         self.start(Language::Python, name, Some(path.to_owned()), first);
         let Some(current) = &mut self.current else {
             return self.refuse(asked, news::NOT_STARTED);
@@ -141,11 +152,16 @@ impl Supervisor {
         if !self.takes_orders() {
             return self.refuse(asked, news::NO_DIAGRAM);
         }
+        let locale = self.locale(asked.locale);
         let Some(current) = &mut self.current else {
             return;
         };
-        let OrderId { client, tag } = asked;
-        let message = ToProgram::Debug { client, tag, order };
+        let message = ToProgram::Debug {
+            client: asked.client,
+            tag: asked.tag,
+            locale,
+            order,
+        };
         if current.orders.len() < limits::DEBUG_ORDERS && current.child.send(message) {
             current.orders.push_back(asked);
         } else {

@@ -5,8 +5,9 @@
 
 use std::fmt;
 
-use super::{Back, Breakpoint, Spot, Step};
+use super::{Back, Breakpoint, Spot, Step, words};
 use crate::limits;
+use lang_text::problem::Words;
 
 /// Something that is asked of a debugger.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -56,33 +57,51 @@ pub enum Order {
 pub enum NoOrder {
     /// No order begins with this word.
     Unknown(Box<str>),
-    /// The order lacks something, which is described.
-    Lacks(&'static str),
+    /// The order lacks something.
+    Lacks(Wanted),
     /// This word cannot be there.
     Strange(Box<str>),
     /// It is longer than an order may be.
     TooLong,
 }
 
+/// What an order may lack.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Wanted {
+    /// The id of a block.
+    Block,
+    /// The name of a variable.
+    Variable,
+    /// The name of a thread.
+    Thread,
+    /// The number of a breakpoint.
+    Number,
+    /// How many hits a breakpoint lets pass.
+    Hits,
+    /// A time of the program.
+    Time,
+    /// A variable and its value.
+    Assignment,
+    /// An expression.
+    Expression,
+}
+
+impl NoOrder {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        words::no_order(self)
+    }
+}
+
 impl fmt::Display for NoOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(word) => write!(f, "'{word}' is no order; orders are {WORDS}"),
-            Self::Lacks(what) => write!(f, "this order needs {what}"),
-            Self::Strange(word) => write!(f, "'{word}' cannot be in this order"),
-            Self::TooLong => write!(f, "an order has at most {} bytes", limits::ORDER_BYTES_MAX),
-        }
+        f.write_str(&self.words().english)
     }
 }
 
 /// All words with which orders begin.
 pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, watch, \
     clear, enable, disable, breakpoints, errors, motors, set, evaluate";
-
-const A_BLOCK: &str = "the id of a block";
-const A_VARIABLE: &str = "the name of a variable";
-const A_THREAD: &str = "the name of a thread";
-const A_NUMBER: &str = "the number of a breakpoint";
 
 impl Order {
     /// What a text asks for.
@@ -109,12 +128,16 @@ impl Order {
             "breakpoints" if rest.is_empty() => Self::Breakpoints(0),
             "breakpoints" => return breakpoints(rest),
             "step" => return step(rest),
-            "until" => return Ok(Self::Until(some(rest, A_BLOCK)?)),
+            "until" => return Ok(Self::Until(some(rest, Wanted::Block)?)),
             "back" => return back(rest).map(Self::Back),
-            "hold" => return Ok(Self::Hold(some(rest, A_THREAD)?)),
-            "release" => return Ok(Self::Release(some(rest, A_THREAD)?)),
-            "break" => return breakpoint((rest, A_BLOCK), more, Spot::Block).map(Self::Break),
-            "watch" => return breakpoint((rest, A_VARIABLE), more, Spot::Change).map(Self::Break),
+            "hold" => return Ok(Self::Hold(some(rest, Wanted::Thread)?)),
+            "release" => return Ok(Self::Release(some(rest, Wanted::Thread)?)),
+            "break" => {
+                return breakpoint((rest, Wanted::Block), more, Spot::Block).map(Self::Break);
+            }
+            "watch" => {
+                return breakpoint((rest, Wanted::Variable), more, Spot::Change).map(Self::Break);
+            }
             "clear" if rest == "all" => return Ok(Self::Clear(None)),
             "clear" => return number(rest).map(|number| Self::Clear(Some(number))),
             "enable" => return number(rest).map(|number| Self::Enable(number, true)),
@@ -122,11 +145,11 @@ impl Order {
             "errors" => return either(rest, ["stop", "go"]).map(Self::Errors),
             "motors" => return either(rest, ["rest", "keep"]).map(Self::Motors),
             "set" => {
-                let lacks = NoOrder::Lacks("NAME=EXPRESSION");
+                let lacks = NoOrder::Lacks(Wanted::Assignment);
                 let (name, text) = rest.split_once('=').ok_or(lacks)?;
                 return Ok(Self::Set(name.trim().into(), text.trim().into()));
             }
-            "evaluate" => return Ok(Self::Evaluate(some(rest, "an expression")?)),
+            "evaluate" => return Ok(Self::Evaluate(some(rest, Wanted::Expression)?)),
             _ => return Err(NoOrder::Unknown(shortened(word))),
         };
         match rest {
@@ -260,7 +283,7 @@ fn shortened(text: &str) -> Box<str> {
     text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
 }
 
-fn some(text: &str, what: &'static str) -> Result<Box<str>, NoOrder> {
+fn some(text: &str, what: Wanted) -> Result<Box<str>, NoOrder> {
     match text {
         "" => Err(NoOrder::Lacks(what)),
         text => Ok(text.into()),
@@ -268,7 +291,7 @@ fn some(text: &str, what: &'static str) -> Result<Box<str>, NoOrder> {
 }
 
 fn number(text: &str) -> Result<u32, NoOrder> {
-    text.parse().map_err(|_| NoOrder::Lacks(A_NUMBER))
+    text.parse().map_err(|_| NoOrder::Lacks(Wanted::Number))
 }
 
 fn either(text: &str, words: [&'static str; 2]) -> Result<bool, NoOrder> {
@@ -294,9 +317,7 @@ fn step(rest: &str) -> Result<Order, NoOrder> {
 fn back(rest: &str) -> Result<Back, NoOrder> {
     if let Some(ms) = rest.strip_prefix("to ") {
         let ms = ms.trim().parse();
-        return ms
-            .map(Back::To)
-            .map_err(|_| NoOrder::Lacks("a time in milliseconds"));
+        return ms.map(Back::To).map_err(|_| NoOrder::Lacks(Wanted::Time));
     }
     match rest {
         "" => Ok(Back::Step(Step::Over)),
@@ -317,7 +338,7 @@ fn breakpoints(rest: &str) -> Result<Order, NoOrder> {
 }
 
 fn breakpoint(
-    (rest, what): (&str, &'static str),
+    (rest, what): (&str, Wanted),
     more: &str,
     spot: impl FnOnce(Box<str>) -> Spot,
 ) -> Result<Breakpoint, NoOrder> {
@@ -330,7 +351,7 @@ fn breakpoint(
         match word {
             "from" => {
                 let hits = words.next().and_then(|word| word.parse().ok());
-                point.from_hit = hits.ok_or(NoOrder::Lacks("a number of hits after `from`"))?;
+                point.from_hit = hits.ok_or(NoOrder::Lacks(Wanted::Hits))?;
             }
             "once" => point.is_once = true,
             "disabled" => point.is_disabled = true,
