@@ -6,13 +6,15 @@ pub(crate) mod words;
 
 use super::listing::Listing;
 use super::report::{At, Report, State, Stop};
+use super::target::words::seconds;
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use words::in_locale;
 
 /// The time of the program.
-pub(crate) fn time(told: &Report) -> String {
-    format!("{:.2} s", told.ms as f64 / 1000.0)
+pub(crate) fn time(told: &Report, locale: Locale) -> String {
+    let unit = in_locale(locale, seconds());
+    format!("{:.2} {unit}", told.ms as f64 / 1000.0)
 }
 
 /// Where it is stopped and why, and the block that comes next; nothing if it is not stopped.
@@ -29,7 +31,7 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
         name => in_locale(locale, words::thread(&harmless(name))),
     };
     let why = why((told, stop), listing, locale);
-    let mut lines = vec![format!("{past}{}{thread}: {why}", time(told))];
+    let mut lines = vec![format!("{past}{}{thread}: {why}", time(told, locale))];
     lines.extend(told.at().map(|at| place(at, listing, locale)));
     let token = told.at().and_then(|at| at.token.as_ref());
     lines.extend(token.map(|token| {
@@ -40,13 +42,16 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
 }
 
 /// The same for a line among others; nothing if it is not stopped.
-pub(crate) fn in_one_line(told: &Report) -> Option<String> {
-    let lines = lines(told, None, Locale::English);
+pub(crate) fn in_one_line(told: &Report, locale: Locale) -> Option<String> {
+    let lines = lines(told, None, locale);
     let lines: Vec<_> = lines
         .iter()
         .map(|line| line.trim_start_matches('>').trim())
         .collect();
-    (!lines.is_empty()).then(|| format!("stopped {}", lines.join(", ")))
+    (!lines.is_empty()).then(|| {
+        let stopped = in_locale(locale, words::stopped());
+        format!("{stopped} {}", lines.join(", "))
+    })
 }
 
 fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
