@@ -417,7 +417,7 @@ mod tests {
         let why = all[1].at.clone().expect_err("it does not run");
         assert!(
             all[1]
-                .complaint(&why)
+                .complaint(&why, Locale::English)
                 .starts_with("sim: /none/robot: no virtual robot"),
             "{why}"
         );
@@ -463,7 +463,7 @@ mod tests {
             },
         ];
         assert_eq!(
-            table(&all, &results, 2),
+            table(&all, &results, (2, Locale::English)),
             "ROBOT          FILES     RESULT\na              2 of 2    x.js runs\n192.168.77.10  0 of 2    FAILED: it burns\n"
         );
     }
