@@ -39,7 +39,11 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser, locale:
         requests: to_send,
         stop: stop.clone(),
     };
-    let relay = tokio::spawn(relay::run(shared.robot.subscribe(), outgoing, came));
+    let relay = tokio::spawn(relay::run(
+        (shared.robot.subscribe(), locale),
+        outgoing,
+        came,
+    ));
     // It goes on when all else has ended: it has to bring actuators to rest.
     tokio::spawn(drive::run(
         shared.settings.tree.clone(),

@@ -3,7 +3,7 @@
 //! Owns the errors of this crate. Knows no command.
 
 use crate::limits::MISTAKES_MAX;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use std::fmt;
 use std::io;
 use std::net::SocketAddr;
@@ -67,7 +67,7 @@ pub enum Error {
     /// No recording is played.
     NoPlayback,
     /// The world or the player says no.
-    World(String),
+    World(Words),
     /// Somebody else is in control.
     Taken(String),
     /// This computer may look only.
@@ -144,8 +144,8 @@ impl fmt::Display for Error {
             }
             Self::NoWorld => f.write_str("a real robot has no world that takes orders"),
             Self::NoPlayback => f.write_str("no recording is played here"),
-            Self::World(why)
-            | Self::Robot(why)
+            Self::World(why) => f.write_str(&why.english),
+            Self::Robot(why)
             | Self::Diagram(why)
             | Self::Change(why)
             | Self::Configuration(why) => f.write_str(why),

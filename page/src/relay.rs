@@ -6,6 +6,7 @@
 use crate::limits;
 use axum::body::Bytes;
 use frame::{Decoder, encode};
+use lang_text::problem::Locale;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -45,9 +46,9 @@ pub struct Outgoing {
 }
 
 /// Connects until `came` is closed, and sends what comes while the robot is there; requests that come while it is not
-/// are lost, and the browser knows of that by [`Came::Gone`].
+/// are lost, and the browser knows of that by [`Came::Gone`]. The robot speaks this language, as far as it can.
 pub async fn run(
-    mut address: watch::Receiver<Option<SocketAddr>>,
+    (mut address, locale): (watch::Receiver<Option<SocketAddr>>, Locale),
     mut outgoing: Outgoing,
     came: mpsc::Sender<Came>,
 ) {
@@ -64,7 +65,7 @@ pub async fn run(
                     let (read, write) = stream.into_split();
                     let why = tokio::select! {
                         why = receive(read, &came) => why,
-                        why = send(write, &mut outgoing) => why,
+                        why = send(write, locale, &mut outgoing) => why,
                         _ = address.changed() => Ok(()),
                         () = came.closed() => return,
                     };
@@ -113,7 +114,14 @@ async fn receive(mut read: OwnedReadHalf, came: &mpsc::Sender<Came>) -> io::Resu
     }
 }
 
-async fn send(mut write: OwnedWriteHalf, outgoing: &mut Outgoing) -> io::Result<()> {
+async fn send(
+    mut write: OwnedWriteHalf,
+    locale: Locale,
+    outgoing: &mut Outgoing,
+) -> io::Result<()> {
+    // What the robot says of programs of blocks is for this person.
+    let language = format!("language:{}", locale.name());
+    write.write_all(&encode(language.as_bytes())).await?;
     loop {
         let message = tokio::select! {
             biased;

@@ -3,7 +3,7 @@
 //! Owns the texts. The English ones stand with the errors.
 
 use crate::error::{Busy, Error};
-use lang_text::problem::Words;
+use lang_text::problem::{Words, of_system};
 use std::io;
 
 impl Error {
@@ -26,9 +26,9 @@ fn russian(error: &Error) -> String {
         }
         Error::NoWorld => "у настоящего робота нет мира, которым можно распоряжаться".to_owned(),
         Error::NoPlayback => "здесь не воспроизводится никакая запись".to_owned(),
+        Error::World(why) => why.russian.clone(),
         // These have been said by others.
-        Error::World(why)
-        | Error::Robot(why)
+        Error::Robot(why)
         | Error::Diagram(why)
         | Error::Change(why)
         | Error::Configuration(why) => why.clone(),
@@ -65,30 +65,8 @@ fn busy(what: Busy) -> &'static str {
     }
 }
 
-/// What the system says, by its own words; others stay as they are.
-const SYSTEM: [(&str, &str); 13] = [
-    ("No such file or directory", "такого файла нет"),
-    ("Permission denied", "нет прав"),
-    ("Operation not permitted", "это не разрешено"),
-    ("Invalid argument", "такое значение не принимается"),
-    ("Device or resource busy", "занято другой программой"),
-    ("Connection timed out", "устройство не ответило вовремя"),
-    ("No such device", "устройства нет"),
-    (
-        "Numerical result out of range",
-        "значение вне допустимых пределов",
-    ),
-    ("Input/output error", "устройство отказало"),
-    ("Remote I/O error", "на шине никто не отозвался"),
-    ("No space left on device", "на диске нет места"),
-    ("Read-only file system", "диск только для чтения"),
-    ("Address already in use", "адрес уже занят"),
-];
-
 fn system(error: &io::Error) -> String {
-    let said = crate::error::plain(error);
-    let known = SYSTEM.iter().find(|(english, _)| *english == said);
-    known.map_or(said, |(_, russian)| (*russian).to_owned())
+    of_system(&error.to_string())
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 //!
 //! Owns the border. What is in the texts is known to the simulator that makes them and to `page/app/src/world`, which draws them.
 
+use lang_text::problem::Words;
+
 /// A world that can be looked at and takes orders. Its methods are called from the thread of the server and must not wait.
 pub trait World: Send + Sync {
     /// What stands still, as JSON, with a number that changes whenever it does.
@@ -25,13 +27,13 @@ pub trait World: Send + Sync {
     fn order(&self, words: &str) -> Result<(), Refused>;
 }
 
-/// Why a world does not do what it is told: a sentence for the person.
+/// Why a world does not do what it is told: a sentence for the person, in both languages.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refused(pub String);
+pub struct Refused(pub Words);
 
 impl std::fmt::Display for Refused {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(&self.0.english)
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Owns the reasons and their words, which the author of the program reads: the blame is always the caller's.
 
+mod words;
+
 use crate::limits;
 use std::fmt;
 
@@ -82,6 +84,13 @@ impl fmt::Display for Fault {
                 "{width} x {height} pixels need {needed} numbers, there are {there}"
             ),
         }
+    }
+}
+
+impl Fault {
+    /// The sentence in Russian.
+    pub fn russian(&self) -> String {
+        words::russian(self)
     }
 }
 

@@ -3,7 +3,10 @@
 //! A text has one fault in each line: a kind and, for some kinds, a number. Owns the table of devices and kinds; what a
 //! fault does to its device is decided where the device is.
 
+mod words;
+
 use crate::limits::{MAX_NOISE, MAX_SAG_V, MAX_SLOW_MS};
+use lang_text::problem::Words;
 use std::fmt;
 
 /// Index of the coprocessor.
@@ -105,6 +108,13 @@ impl fmt::Display for Refusal {
                 write!(out, "{kind} {word} is not between 0 and {most}")
             }
         }
+    }
+}
+
+impl Refusal {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
     }
 }
 

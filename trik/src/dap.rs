@@ -14,6 +14,7 @@ mod python;
 mod script;
 mod session;
 mod view;
+mod words;
 
 use crate::refusal::{Refusal, UNREADABLE};
 use clap::Args;

@@ -7,19 +7,7 @@ use lang_text::problem::Locale;
 
 /// The language of messages by its short name.
 pub(crate) fn locale(name: &str) -> Result<Locale, Error> {
-    match name {
-        "en" => Ok(Locale::English),
-        "ru" => Ok(Locale::Russian),
-        _ => Err(Error::Refused("there are en and ru".to_owned())),
-    }
-}
-
-/// Its short name.
-pub(crate) fn name(locale: Locale) -> &'static str {
-    match locale {
-        Locale::English => "en",
-        Locale::Russian => "ru",
-    }
+    Locale::named(name).ok_or_else(|| Error::Refused("there are en and ru".to_owned()))
 }
 
 /// That of the system, as its environment has it.

@@ -21,3 +21,4 @@ pub(crate) mod stories;
 pub(crate) mod target;
 mod upload;
 pub(crate) mod watch;
+pub(crate) mod words;

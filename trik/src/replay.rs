@@ -271,7 +271,7 @@ impl Playback for Player {
     }
 
     fn order(&self, words: &str) -> Result<(), Refused> {
-        let order = Order::read(words).map_err(|why| Refused(why.to_string()))?;
+        let order = Order::read(words).map_err(|why| Refused(words::bad_order(&why)))?;
         Player::order(self, order);
         Ok(())
     }

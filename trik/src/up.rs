@@ -17,6 +17,7 @@ pub(crate) mod telling;
 pub(crate) mod tree;
 pub(crate) mod trikd;
 mod view;
+mod words;
 pub(crate) mod world;
 
 use crate::error::Error;
@@ -47,7 +48,10 @@ pub(crate) fn run(args: UpArgs) -> Result<u8, Refusal> {
 }
 
 fn simulate(args: UpArgs) -> Result<(), Error> {
-    let world = args.world.as_deref().map(world::read).transpose()?;
+    let world = {
+        let read = |path| world::read(path, args.serving.locale());
+        args.world.as_deref().map(read).transpose()?
+    };
     let platform = match &world {
         Some((field, locks)) => Platform::world(field, *locks, args.seed),
         None => Platform::robot(&args)?,

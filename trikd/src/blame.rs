@@ -2,6 +2,7 @@
 //!
 //! Knows no failure of ours.
 
+use lang_text::problem::of_system;
 use std::fmt;
 use std::io;
 
@@ -47,6 +48,13 @@ impl From<nix::Error> for Os {
             errno: Some(error as i32),
             text: error.to_string(),
         }
+    }
+}
+
+impl Os {
+    /// What the system said, in Russian as far as that is known.
+    pub fn russian(&self) -> String {
+        of_system(&self.text)
     }
 }
 

@@ -223,7 +223,8 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
         Err(Failure::Told) => ExitCode::FAILURE,
         Err(failure) => {
             // The daemon that would show it may be gone.
-            let _ = host.error(&failure.to_string());
+            let locale = crate::diagram::of_environment();
+            let _ = host.error(failure.words().in_locale(locale));
             ExitCode::FAILURE
         }
     }

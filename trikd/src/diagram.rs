@@ -19,6 +19,7 @@ mod robot;
 mod source;
 mod versions;
 mod watch;
+mod words;
 
 use crate::brick::Brick;
 use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
@@ -57,7 +58,7 @@ pub struct Diagram {
 pub fn engine() -> impl Engine {
     let named = |name: &str| std::env::var(name).unwrap_or_default();
     Diagram {
-        locale: locale(&named("TRIK_LANGUAGE")),
+        locale: of_environment(),
         patience: Duration::from_secs(named("TRIK_ANSWER_S").parse().unwrap_or(limits::ANSWER_S)),
         compat: if named("TRIK_COMPAT") == settings::Compat::Fixed.name() {
             Compat::Fixed
@@ -65,6 +66,11 @@ pub fn engine() -> impl Engine {
             Compat::Studio
         },
     }
+}
+
+/// The language in which a program says what it says by itself, as the daemon names it.
+pub fn of_environment() -> Locale {
+    locale(&std::env::var("TRIK_LANGUAGE").unwrap_or_default())
 }
 
 /// The language of messages by its name, as `LANG` has it: Russian if it begins with `ru`, else English.
@@ -210,7 +216,7 @@ fn run(
 ) -> io::Result<()> {
     let start = Instant::now();
     let mut due = start;
-    let mut versions = Versions::new(watch.locale());
+    let mut versions = Versions::default();
     loop {
         let now = since(start);
         let goes_on = diagram.step(now, robot, watch);
@@ -314,13 +320,18 @@ fn hear(
         Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-        change @ (Incoming::Patch(..) | Incoming::Set(_)) => {
+        change @ (Incoming::Patch(..) | Incoming::Set(..)) => {
             if let Some(change) = versions.keep(change) {
                 begin_change(change, now, (diagram, robot, watch), versions, host)?;
             }
         }
-        Incoming::Debug { client, tag, order } => {
-            let answer = diagram.order((tag, &order), now, robot, watch);
+        Incoming::Debug {
+            client,
+            tag,
+            locale,
+            order,
+        } => {
+            let answer = diagram.answer((tag, &order), locale, now, (robot, watch));
             host.debug(client, &answer)?;
             diagram.report(now, true, host)?;
         }
@@ -329,7 +340,7 @@ fn hear(
             diagram.report(now, true, host)?;
         }
         // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
-        Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
+        Incoming::Direct(_) => host.error(words::no_direct().in_locale(watch.locale()))?,
         // The caller knows.
         Incoming::Gone => {}
     }
@@ -345,13 +356,13 @@ fn begin_change(
     host: &Host,
 ) -> io::Result<()> {
     match change {
-        Incoming::Patch(when_gone, path) => {
-            versions.begin(when_gone, path);
+        Incoming::Patch(when_gone, path, locale) => {
+            versions.begin(when_gone, path, locale);
             Ok(())
         }
-        Incoming::Set(text) => {
+        Incoming::Set(text, locale) => {
             let (session, mut driven) = diagram.parts(robot);
-            let answer = live::set(session, &text, &mut driven, watch);
+            let answer = live::set(session, (&text, locale), &mut driven, watch);
             tell_change(&answer, now, diagram, host)
         }
         // Nothing else is a change.
@@ -377,7 +388,7 @@ fn take_version(
         let answer = match ready.project {
             Ok(project) => {
                 let (session, mut driven) = diagram.parts(robot);
-                let version = (ready.when_gone, &*ready.name, &project);
+                let version = (ready.when_gone, &*ready.name, &project, ready.locale);
                 live::patch(session, version, &mut driven, watch)
             }
             Err(answer) => answer,

@@ -2,9 +2,12 @@
 //!
 //! Owns the file of the tree and when it is written. What orders mean and how things look is in the crate `screen`.
 
+mod words;
+
 use crate::blame::{Blame, Os};
 use crate::limits;
 use crate::pictures::{self, NoPicture};
+use lang_text::problem::Words;
 use screen::Fault;
 use screen::order::Effect;
 use screen::picture::{self, RawFormat};
@@ -61,6 +64,11 @@ pub enum Unshown {
 }
 
 impl Unshown {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
+    }
+
     /// Who can change something about it.
     pub fn blame(&self) -> Blame {
         match self {

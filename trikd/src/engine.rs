@@ -4,11 +4,14 @@
 //! stops an engine politely: the daemon brings the motors to rest and kills the process. So an engine keeps nothing
 //! that must be saved, and may loop, block and recurse as its program likes.
 
+mod words;
+
 use crate::blame::{Blame, Os};
 use crate::brick::Brick;
 use crate::host::Host;
 use crate::js::files::Unread;
 use crate::limits;
+use lang_text::problem::{Locale, Words};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -34,6 +37,14 @@ pub enum NoDiagram {
     TooLong(u64),
     /// What is wrong with it, in the language of the person.
     Problems(Vec<String>),
+}
+
+impl NoDiagram {
+    /// For a person with this language.
+    pub fn in_locale(&self, locale: Locale) -> String {
+        let words = Words::new(self.to_string(), words::no_diagram(self));
+        words.in_locale(locale).to_owned()
+    }
 }
 
 impl fmt::Display for NoDiagram {
@@ -132,6 +143,11 @@ impl Failure {
             Self::Broken | Self::NoStart(_) | Self::Deaf(_) => Blame::Trikd,
             Self::Stop(..) => Blame::Tree,
         }
+    }
+
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
     }
 }
 

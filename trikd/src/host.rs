@@ -9,6 +9,7 @@ use crate::limits;
 use crate::protocol::program::mailbox::Question;
 use crate::protocol::program::{FromProgram, ToProgram, WhenGone};
 use frame::{Decoder, encode};
+use lang_text::problem::Locale;
 use nix::errno::Errno;
 use nix::sys::socket::MsgFlags;
 use std::cell::RefCell;
@@ -29,16 +30,18 @@ pub enum Incoming {
     Web,
     /// Whether somebody wants to see where the program is: tell it with [`Host::watch`].
     Watch(bool),
-    /// A new version of the program is in this file: answer with [`Host::changed`].
-    Patch(WhenGone, PathBuf),
-    /// An assignment, `NAME=EXPRESSION`: answer with [`Host::changed`].
-    Set(String),
+    /// A new version of the program is in this file: answer with [`Host::changed`], in this language.
+    Patch(WhenGone, PathBuf, Locale),
+    /// An assignment, `NAME=EXPRESSION`: answer with [`Host::changed`], in this language.
+    Set(String, Locale),
     /// An order to the debugger: answer with [`Host::debug`].
     Debug {
         /// Whose order it is.
         client: u32,
         /// What the client calls it.
         tag: u32,
+        /// The language of the answer.
+        locale: Locale,
         /// The order.
         order: String,
     },
@@ -105,7 +108,7 @@ impl Host {
                 | ToProgram::Web
                 | ToProgram::Watch(_)
                 | ToProgram::Patch { .. }
-                | ToProgram::Set(_)
+                | ToProgram::Set { .. }
                 | ToProgram::Debugpy { .. }
                 | ToProgram::Debug { .. }
                 | ToProgram::DebugLeft
@@ -337,12 +340,22 @@ fn incoming(frame: &str) -> Option<Incoming> {
         ToProgram::Mail { hull, text } => Some(Incoming::Mail(hull, text.to_owned())),
         ToProgram::Web => Some(Incoming::Web),
         ToProgram::Watch(is_wanted) => Some(Incoming::Watch(is_wanted)),
-        ToProgram::Patch { when_gone, path } => Some(Incoming::Patch(when_gone, path.into())),
-        ToProgram::Set(text) => Some(Incoming::Set(text.to_owned())),
+        ToProgram::Patch {
+            when_gone,
+            locale,
+            path,
+        } => Some(Incoming::Patch(when_gone, path.into(), locale)),
+        ToProgram::Set { locale, text } => Some(Incoming::Set(text.to_owned(), locale)),
         ToProgram::Reply { number, text } => Some(Incoming::Reply(number, text.map(str::to_owned))),
-        ToProgram::Debug { client, tag, order } => Some(Incoming::Debug {
+        ToProgram::Debug {
             client,
             tag,
+            locale,
+            order,
+        } => Some(Incoming::Debug {
+            client,
+            tag,
+            locale,
             order: order.to_owned(),
         }),
         ToProgram::DebugLeft => Some(Incoming::DebugLeft),

@@ -37,7 +37,7 @@ use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::{Manner, Meter};
-pub use queue::{Command, Meeting, Programs, Wish};
+pub use queue::{Command, Heard, Meeting, Programs, Wish};
 use reaper::{Ended, Reaper};
 use recorder::kept::SaveReason;
 use rest::Rest;
@@ -161,12 +161,13 @@ impl Supervisor {
 
     async fn perform(&mut self, command: Command) {
         match command {
-            Command::Run(path) => {
+            Command::Run(path, heard) => {
                 self.end(Cause::Ordered("another program")).await;
                 let language = Language::of(&path);
                 let name = self.name_of(&path);
                 let file = path.display().to_string();
-                self.start(language, name, Some(path), ToProgram::File(&file));
+                let first = ToProgram::File(&file);
+                self.start(language, name, Some(path), (first, heard));
             }
             Command::Script(code) => {
                 self.end(Cause::Ordered("another program")).await;
@@ -174,12 +175,14 @@ impl Supervisor {
                     Language::JavaScript,
                     "script".to_owned(),
                     None,
-                    ToProgram::Script(&code),
+                    (ToProgram::Script(&code), None),
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
-            Command::Patch(client, when_gone, path) => self.patch(client, when_gone, &path),
-            Command::Set(client, text) => self.set(client, &text),
+            Command::Patch(client, when_gone, path, heard) => {
+                self.patch(client, when_gone, &path, heard);
+            }
+            Command::Set(client, text, heard) => self.set(client, &text, heard),
             Command::Reply(number, text) => self.reply(number, text.as_deref()),
             Command::Debug(asked, wish) => self.debug(asked, wish).await,
             Command::DebugLeft => self.debugger_left().await,
@@ -244,7 +247,7 @@ impl Supervisor {
                 language,
                 "direct commands".to_owned(),
                 None,
-                ToProgram::Start,
+                (ToProgram::Start, None),
             );
             match &mut self.current {
                 Some(current) => current.takes_direct = true,
@@ -262,19 +265,20 @@ impl Supervisor {
             .is_some_and(|current| current.child.send(message))
     }
 
-    /// Starts a child with the first message of its channel; a program in a file has its path.
+    /// Starts a child with the first message of its channel, and the language of what it says by itself; a program in a file
+    /// has its path.
     fn start(
         &mut self,
         language: Language,
         name: String,
         path: Option<PathBuf>,
-        first: ToProgram<'_>,
+        (first, heard): (ToProgram<'_>, Heard),
     ) {
         let around = &self.around;
         let started = child::start(
             &around.settings,
             around.owner.as_ref(),
-            language,
+            (language, heard),
             path.as_deref(),
             &around.reaper,
         );

@@ -2,8 +2,11 @@
 //!
 //! Knows nothing of requests and languages.
 
+mod words;
+
 use crate::blame::{Blame, Os};
 use crate::limits;
+use lang_text::problem::Words;
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, DirBuilder, File, OpenOptions};
@@ -66,6 +69,11 @@ impl Refusal {
             | Self::Linked(..) => Blame::Client,
             Self::Disk(..) => Blame::System,
         }
+    }
+
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
     }
 }
 

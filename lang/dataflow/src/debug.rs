@@ -197,6 +197,11 @@ impl Desk {
         }
     }
 
+    /// Speaks this language from now on; the one before.
+    pub fn speak(&mut self, locale: Locale) -> Locale {
+        std::mem::replace(&mut self.locale, locale)
+    }
+
     /// The program as it is, also while a client looks at its past.
     pub fn machine(&self) -> &Machine {
         &self.machine

@@ -32,6 +32,7 @@ pub use history::Position;
 pub use past::{Back, NoBack};
 pub use points::{Breakpoint, NoBreakpoint, Points, Spot, Subject};
 pub use session::{NotNow, Phase, Session};
+pub use words::not_attached;
 
 /// How far a thread goes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

@@ -16,6 +16,24 @@ pub enum Locale {
     Russian,
 }
 
+impl Locale {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::English, Self::Russian];
+
+    /// Its short name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::Russian => "ru",
+        }
+    }
+
+    /// The one with this short name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.name() == name)
+    }
+}
+
 /// One message in both languages.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Words {
@@ -148,6 +166,14 @@ impl Problem {
         }
     }
 
+    /// The problem in one line, in both languages.
+    pub fn in_both(&self) -> Words {
+        Words::new(
+            self.in_locale(Locale::English),
+            self.in_locale(Locale::Russian),
+        )
+    }
+
     /// The problem in one line: place, severity, words.
     pub fn in_locale(&self, locale: Locale) -> String {
         let place = &self.place;
@@ -190,6 +216,11 @@ pub fn locate(problems: &mut [Problem], text: &str) {
         }
         problem.place.position = Some(Position { line, column });
     }
+}
+
+/// What the system said of an error, in Russian as far as that is known: its sentence, with the number of the error or without.
+pub fn of_system(said: &str) -> String {
+    words::of_system(said)
 }
 
 /// Adds a problem to others, unless there are so many already that one more helps nobody.

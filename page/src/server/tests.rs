@@ -233,6 +233,8 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     let scene = scene(true, true);
     let has_rest = scene.gives_rest();
     let (mut browser, mut robot) = scene.browser();
+    // What the robot says of programs of blocks is for who looks.
+    robot_hears(&mut robot, "language:en");
     browser.until("\"is\":\"hello\"");
     browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
     // What was written and who is in control are two pieces of news: either may come first.

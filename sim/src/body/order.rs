@@ -2,8 +2,11 @@
 //!
 //! Owns the words of `control/world` and of pages, and the bounds of their numbers. What an order does is the body's part.
 
+mod words;
+
 use crate::geometry::{Point, Pose, point};
 use crate::limits;
+use lang_text::problem::Words;
 use std::fmt;
 
 /// An order to a world.
@@ -53,13 +56,15 @@ pub enum BadOrder {
     /// A file of a world that cannot be read, and what the system says.
     Unread(String, String),
     /// A file that is no world, and the first thing that is wrong in it.
-    Field(String, String),
+    Field(String, Words),
 }
+
+/// What there is.
+const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER, reset, robot X Y DEGREES, thing NUMBER X Y or \
+                      field FILE";
 
 impl fmt::Display for BadOrder {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER, reset, robot X Y DEGREES, thing NUMBER X Y or \
-                              field FILE";
         match self {
             Self::NoOrders => {
                 out.write_str("this robot has no world around it that takes orders: choose another robot")
@@ -93,8 +98,16 @@ impl fmt::Display for BadOrder {
             Self::RobotLocked => {
                 out.write_str("the project of this world locks the place of the robot")
             }
-            Self::Unread(file, why) | Self::Field(file, why) => write!(out, "{file}: {why}"),
+            Self::Unread(file, why) => write!(out, "{file}: {why}"),
+            Self::Field(file, why) => write!(out, "{file}: {}", why.english),
         }
+    }
+}
+
+impl BadOrder {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
     }
 }
 

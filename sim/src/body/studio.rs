@@ -10,6 +10,7 @@ use std::io::Read;
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::ports::Port;
 use lang_diagram::stand_in;
+use lang_text::problem::{Problem, Words};
 
 use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
@@ -334,7 +335,7 @@ fn read(file: &str) -> Result<Field, BadOrder> {
     let opened = Field::read(&text).map_err(|problems| {
         let first = problems
             .first()
-            .map_or_else(String::new, ToString::to_string);
+            .map_or_else(|| Words::new("", ""), Problem::in_both);
         BadOrder::Field(file.to_owned(), first)
     })?;
     Ok(opened.field)

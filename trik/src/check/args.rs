@@ -177,7 +177,7 @@ impl CheckArgs {
             format!("--wall-limit={}", self.wall_limit).into(),
             format!("--memory={}", self.memory).into(),
             format!("--seed={}", self.seed).into(),
-            format!("--language={}", language::name(self.language)).into(),
+            format!("--language={}", self.language.name()).into(),
         ]);
         words
     }

@@ -2,8 +2,10 @@
 //!
 //! Owns numbers of messages and the thread that reads. Knows no request.
 
+use crate::debug::target::words::told;
 use crate::limits;
 use crate::wire::{self, Frame, Frames};
+use lang_text::problem::Locale;
 use serde_json::{Map, Value, json};
 use std::io::{BufReader, Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -108,6 +110,8 @@ pub(super) struct Client {
     to: Box<dyn Write>,
     seq: u64,
     is_gone: bool,
+    /// The language of the person at the editor.
+    locale: Locale,
 }
 
 impl Client {
@@ -131,6 +135,20 @@ impl Client {
             to,
             seq: 0,
             is_gone: false,
+            locale: Locale::default(),
+        }
+    }
+
+    /// The person at the editor speaks the language of these arguments, if they name one: of a launch by `language`, of the
+    /// greeting by `locale`, as `ru-RU`.
+    pub fn hear_language(&mut self, request: &mut Request) {
+        let named = request.text("language").or(request.text("locale"));
+        let short = named.and_then(|name| name.split(['-', '_']).next());
+        if let Some(locale) = short.and_then(Locale::named) {
+            self.locale = locale;
+        }
+        if request.command != "initialize" && request.arguments.is_object() {
+            request.arguments["language"] = self.locale.name().into();
         }
     }
 
@@ -169,6 +187,7 @@ impl Client {
             Ok(Value::Null) => {}
             Ok(body) => message["body"] = body,
             Err(Refused(why)) => {
+                let why = told(&why, self.locale);
                 message["body"] = json!({"error": {"id": 1, "format": why, "showUser": true}});
                 message["message"] = Value::String(why);
             }

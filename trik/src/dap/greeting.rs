@@ -15,11 +15,14 @@ const PATIENCE: Duration = Duration::from_millis(100);
 pub(super) fn serve(mut client: Client) {
     let mut hello = Value::Null;
     loop {
-        let request = match client.next(PATIENCE) {
+        let mut request = match client.next(PATIENCE) {
             Incoming::Request(request) => request,
             Incoming::Nothing => continue,
             Incoming::End => return,
         };
+        if matches!(request.command.as_str(), "initialize" | "launch" | "attach") {
+            client.hear_language(&mut request);
+        }
         match request.command.as_str() {
             "initialize" => {
                 client.answer(&request, Ok(capabilities()));

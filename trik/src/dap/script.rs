@@ -6,6 +6,7 @@
 use super::client::{Client, Incoming, Refused, Request};
 use super::greeting::capabilities;
 use super::keys;
+use crate::debug::target::words::told;
 use crate::debug::target::{Channel, Event, Target, why_not};
 use crate::error::Error;
 use crate::remote::debugged::{Debugged, Runs};
@@ -307,9 +308,10 @@ impl Session<'_> {
                 done.map(|()| Value::Null)
             }
             "setBreakpoints" | "setFunctionBreakpoints" => {
+                let locale = super::python::locale(&self.launch);
+                let why = told(news::NOT_IN_JAVASCRIPT, locale);
                 let points = request.items("breakpoints").iter();
-                let none =
-                    points.map(|_| json!({"verified": false, "message": news::NOT_IN_JAVASCRIPT}));
+                let none = points.map(|_| json!({"verified": false, "message": why}));
                 let none: Vec<Value> = none.collect();
                 Ok(json!({ "breakpoints": none }))
             }

@@ -458,7 +458,7 @@ impl<'a> Session<'a> {
                 let id = request.number("threadId").unwrap_or(0);
                 view::stack(&self.told, id, window, self.listing, &self.name)
             }
-            "scopes" => view::scopes(&self.told),
+            "scopes" => view::scopes(&self.told, self.launch.locale()),
             "variables" => {
                 let _ = self.order(&Order::Look)?;
                 let reference = request.number("variablesReference").unwrap_or(0);

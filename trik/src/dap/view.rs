@@ -2,12 +2,14 @@
 //!
 //! Owns the numbers by which it asks for them. They are good until the program goes on.
 
+use super::words;
 use crate::debug::listing::Listing;
 use crate::debug::report::{At, Report, State};
 use crate::debug::target::{Target, why_not};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::ports::Port;
+use lang_text::problem::Locale;
 use serde_json::{Value, json};
 
 /// The text of the diagram, as a source.
@@ -113,13 +115,14 @@ pub(super) fn source(name: &str) -> Value {
     json!({"name": name, "sourceReference": SOURCE, "origin": "trik show"})
 }
 
-pub(super) fn scopes(told: &Report) -> Value {
+pub(super) fn scopes(told: &Report, locale: Locale) -> Value {
+    let [variables, sensors, ports] = words::scopes(locale);
     let mut scopes = vec![
-        json!({"name": "Variables", "variablesReference": VARIABLES, "expensive": false}),
-        json!({"name": "Sensors", "variablesReference": SENSORS, "expensive": true}),
+        json!({"name": variables, "variablesReference": VARIABLES, "expensive": false}),
+        json!({"name": sensors, "variablesReference": SENSORS, "expensive": true}),
     ];
     if is_whole(told) {
-        scopes.push(json!({"name": "Ports", "variablesReference": PORTS, "expensive": false}));
+        scopes.push(json!({"name": ports, "variablesReference": PORTS, "expensive": false}));
     }
     json!({ "scopes": scopes })
 }

@@ -103,7 +103,7 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
 /// Obstacles, and with a world where its robot stands.
 fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Refusal> {
     if let Some(path) = &args.world {
-        let (field, _) = crate::up::world::read(path)?;
+        let (field, _) = crate::up::world::read(path, Locale::English)?;
         let obstacles = field::obstacles(&field)
             .map_err(|why| Refusal::new(format!("{}: {why}", named(path))))?;
         return Ok((obstacles, field::stand(&field)));

@@ -6,13 +6,15 @@ pub(crate) mod words;
 
 use super::listing::Listing;
 use super::report::{At, Report, State, Stop};
+use super::target::words::seconds;
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use words::in_locale;
 
 /// The time of the program.
-pub(crate) fn time(told: &Report) -> String {
-    format!("{:.2} s", told.ms as f64 / 1000.0)
+pub(crate) fn time(told: &Report, locale: Locale) -> String {
+    let unit = in_locale(locale, seconds());
+    format!("{:.2} {unit}", told.ms as f64 / 1000.0)
 }
 
 /// Where it is stopped and why, and the block that comes next; nothing if it is not stopped.
@@ -29,7 +31,7 @@ pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) ->
         name => in_locale(locale, words::thread(&harmless(name))),
     };
     let why = why((told, stop), listing, locale);
-    let mut lines = vec![format!("{past}{}{thread}: {why}", time(told))];
+    let mut lines = vec![format!("{past}{}{thread}: {why}", time(told, locale))];
     lines.extend(told.at().map(|at| place(at, listing, locale)));
     let token = told.at().and_then(|at| at.token.as_ref());
     lines.extend(token.map(|token| {
@@ -52,16 +54,16 @@ pub(crate) fn standing(told: &Report, listing: Option<&Listing>, locale: Locale)
         State::Running | State::Ended => return None,
         State::Searching => words::is_searched(),
         State::Stopped => words::is_stopped(&why(told)),
-        State::Past => words::is_past(&time(told), &why(told)),
+        State::Past => words::is_past(&time(told, locale), &why(told)),
     };
     Some(in_locale(locale, words))
 }
 
 /// The same for a line among others, with blocks as people see them; nothing if it is not stopped.
-pub(crate) fn in_one_line(told: &Report) -> Option<String> {
-    let mut lines = lines(told, None, Locale::English);
+pub(crate) fn in_one_line(told: &Report, locale: Locale) -> Option<String> {
+    let mut lines = lines(told, None, locale);
     if let (Some(line), Some(at)) = (lines.get_mut(1), told.at()) {
-        *line = short(at);
+        *line = short(at, locale);
     }
     let lines: Vec<_> = lines
         .iter()
@@ -69,17 +71,24 @@ pub(crate) fn in_one_line(told: &Report) -> Option<String> {
         .map(|line| line.trim_start_matches('>').trim())
         .filter(|line| !line.is_empty())
         .collect();
-    (!lines.is_empty()).then(|| format!("stopped {}", lines.join(", ")))
+    (!lines.is_empty()).then(|| {
+        let stopped = in_locale(locale, words::stopped());
+        format!("{stopped} {}", lines.join(", "))
+    })
 }
 
 /// A place without the id of its block.
-fn short(at: &At) -> String {
+fn short(at: &At, locale: Locale) -> String {
     let (diagram, block) = (harmless(&at.diagram), harmless(&at.block));
+    let line = |number: &dyn std::fmt::Display| {
+        let line = in_locale(locale, words::line());
+        format!("{line} {number}")
+    };
     match (&at.token, at.line) {
         (Some(token), _) => format!("{diagram}, {}", harmless(&token.block)),
         // What was uploaded as a text has no file.
-        (None, Some(line)) if at.diagram.starts_with('<') => format!("line {line}"),
-        (None, Some(line)) => format!("{diagram} line {line}"),
+        (None, Some(number)) if at.diagram.starts_with('<') => line(&number),
+        (None, Some(number)) => format!("{diagram} {}", line(&number)),
         (None, None) if at.block.is_empty() => String::new(),
         (None, None) => format!("{diagram}, {block}"),
     }
@@ -123,7 +132,7 @@ fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
         None if let Some(token) = &at.token => {
             format!(">     {diagram}, {}", harmless(&token.block))
         }
-        None if at.id.is_empty() => format!(">     {}", short(at)),
+        None if at.id.is_empty() => format!(">     {}", short(at, locale)),
         None => format!(">     {diagram}, {block} {}", harmless(&at.id)),
     }
 }

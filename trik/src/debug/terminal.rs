@@ -219,7 +219,10 @@ impl<'a> Terminal<'a> {
                 self.hear_but_states(&events)?;
                 match events.iter().any(|event| matches!(event, Event::Over(_))) {
                     true => Ok(()),
-                    false => self.says(words::ended_at(&stops::time(&self.told))),
+                    false => self.says(words::ended_at(&stops::time(
+                        &self.told,
+                        self.source.locale,
+                    ))),
                 }
             }
         }
@@ -312,7 +315,10 @@ impl<'a> Terminal<'a> {
             State::Stopped | State::Past => self.show_stop(),
             // The end of a run is said with its verdict.
             State::Ended if is_over => Ok(()),
-            State::Ended => self.says(words::ended_at(&stops::time(&self.told))),
+            State::Ended => self.says(words::ended_at(&stops::time(
+                &self.told,
+                self.source.locale,
+            ))),
             State::Running | State::Searching => Ok(()),
         }
     }

@@ -12,6 +12,7 @@ use super::watch::look;
 use crate::error::Error;
 use crate::limits;
 use bridge::foxglove::robot::{self, Refused};
+use lang_text::problem::Locale;
 use serde_json::Value;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -129,7 +130,13 @@ impl robot::Programs for Programs {
             return Err(Refused::Absent(format!("diagram/{name}")));
         }
         let expression = expression(value).ok_or_else(|| Refused::Value(name.to_owned()))?;
-        match assign(&self.target, &format!("{name}={expression}")).map_err(refused)? {
+        match assign(
+            &self.target,
+            &format!("{name}={expression}"),
+            Locale::English,
+        )
+        .map_err(refused)?
+        {
             (true, _) => Ok(()),
             (false, why) => Err(Refused::Program(why)),
         }

@@ -89,7 +89,7 @@ impl Debugged {
         at: &super::target::Target,
         locale: Locale,
     ) -> Result<Self, Error> {
-        let upload = Upload::read(path, diagram)?;
+        let upload = Upload::read(path, diagram, locale)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
         let mut debugged = Self::over(link, Begun::Here, locale);
@@ -132,7 +132,7 @@ impl Debugged {
         at: &super::target::Target,
         locale: Locale,
     ) -> Result<(Self, String), Error> {
-        let upload = Upload::read(path, None)?;
+        let upload = Upload::read(path, None, locale)?;
         let mut link = at.connect()?;
         upload.send(&mut link, |_, _| {})?;
         let mut debugged = Self::over(link, Begun::Here, locale);
@@ -146,7 +146,7 @@ impl Debugged {
     /// # Errors
     /// A sentence: the file cannot be sent, and what ran goes on unless its end is told; or the robot is gone.
     pub(crate) fn python_again(&mut self, path: &Path) -> Result<String, Error> {
-        let upload = Upload::read(path, None)?;
+        let upload = Upload::read(path, None, self.locale)?;
         upload.send(&mut self.link, |_, _| {})?;
         let folder = self.begin_python(&upload.name)?;
         self.events
@@ -206,7 +206,8 @@ impl Debugged {
         name.is_some_and(|name| news::ended(text, name).is_some())
     }
 
-    fn over(link: Link, begun: Begun, locale: Locale) -> Self {
+    fn over(mut link: Link, begun: Begun, locale: Locale) -> Self {
+        link.speak(locale);
         Self {
             link,
             locale,
@@ -410,7 +411,7 @@ impl Target for Debugged {
         if let Some(mistakes) = version.mistakes(file, self.locale) {
             return Ok(Changed::Wrong(mistakes));
         }
-        let upload = Upload::read(file, diagram)?;
+        let upload = Upload::read(file, diagram, self.locale)?;
         let patch = format!("patch:{}:{}", WhenGone::Refuse.word(), upload.name);
         self.is_changed = None;
         self.awaits = Some(upload.name.clone());

@@ -2,6 +2,8 @@
 //!
 //! Owns a thread for each robot, the lines about their progress and the table at the end.
 
+mod words;
+
 use super::link::{Link, Message, ms};
 use super::output::{harmless, say};
 use super::roster::{Class, class};
@@ -11,10 +13,13 @@ use super::upload::{Upload, start};
 use super::watch::look;
 use crate::debug::report::Report;
 use crate::debug::stops;
+use crate::debug::target::words::told;
 use crate::error::Error;
+use crate::language;
 use crate::limits;
 use crate::refusal::Refusal;
 use clap::Args;
+use lang_text::problem::Locale;
 use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -32,6 +37,9 @@ pub(crate) struct FleetArgs {
     /// The robots that a file names, a line for each: NAME ADDRESS [GROUP] [page=PORT]; with :GROUP those of that group.
     #[arg(long, value_name = "FILE[:GROUP]", value_parser = class)]
     pub class: Option<Class>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// What `trik send` can be told.
@@ -50,6 +58,9 @@ pub(crate) struct SendArgs {
     /// Run this program when all files are there.
     #[arg(long, value_name = "NAME")]
     pub run: Option<String>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// A robot that something is done with.
@@ -73,10 +84,11 @@ impl fmt::Display for Member {
 
 impl Member {
     /// What went wrong with it. A name of a class stands in no other sentence.
-    fn complaint(&self, why: &Error) -> String {
+    fn complaint(&self, why: &Error, locale: Locale) -> String {
+        let why = told(&why.to_string(), locale);
         match &self.name {
             Some(name) => format!("{name}: {why}"),
-            None => why.to_string(),
+            None => why,
         }
     }
 }
@@ -195,6 +207,7 @@ pub(crate) fn stop(args: &FleetArgs) -> u8 {
     ask_all(args, |member| {
         let answer = ask(&member.at.clone()?, Some(b"stop"), ms(limits::ANSWER_MS))?;
         let (rests, text) = answer.of_stop();
+        let text = told(text, args.language);
         let code = u8::from(!rests);
         Ok((code, format!("{member}: {text}\n")))
     })
@@ -206,9 +219,11 @@ pub(crate) fn status(args: &FleetArgs) -> u8 {
         let mut link = member.at.clone()?.connect()?;
         match over(&mut link, None, ms(limits::ANSWER_MS))?.status {
             Some(text) => {
-                let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
+                let line = |line| words::status(line, args.language);
+                let mut lines: Vec<_> = text.lines().map(line).collect();
                 if news::status(&text).runs.is_some() {
-                    let told = debugger(&mut link, &lines);
+                    link.speak(args.language);
+                    let told = debugger(&mut link, &text, args.language);
                     lines.extend(told);
                 }
                 let lines = lines.iter().map(|line| format!("{member}: {line}\n"));
@@ -221,21 +236,23 @@ pub(crate) fn status(args: &FleetArgs) -> u8 {
     })
 }
 
-/// Where a program is stopped by a debugger, and who is in control of that, if its status has not told that. A robot that does
-/// not answer has none.
-fn debugger(link: &mut Link, status: &[String]) -> Vec<String> {
+/// Where a program is stopped by a debugger, which threads are held, and who is in control of that, if its status has not told
+/// that. A robot that does not answer has none.
+fn debugger(link: &mut Link, status: &str, locale: Locale) -> Vec<String> {
     let mut control = None;
     let Ok(answer) = look(link, 1, &mut control) else {
         return Vec::new();
     };
     let told = answer.get("program").and_then(Report::read);
-    let stopped = told.as_ref().and_then(stops::in_one_line);
+    let stopped = told
+        .as_ref()
+        .and_then(|told| stops::in_one_line(told, locale));
     let held = told.map(|told| told.held.join(", "));
     let held = held.filter(|names| !names.is_empty());
     let mut lines: Vec<_> = stopped.into_iter().collect();
-    lines.extend(held.map(|names| format!("held {names}")));
-    let control = control.map(|holder| news::debugs(&holder).trim_end().to_owned());
-    lines.extend(control.filter(|line| !status.contains(line)));
+    lines.extend(held.map(|names| words::held(&names, locale)));
+    let control = control.filter(|holder| !status.contains(&news::debugs(holder)));
+    lines.extend(control.map(|holder| words::debugger(&holder, locale)));
     lines
 }
 
@@ -244,20 +261,20 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Member) -> Result<(u8, String), Erro
     let all = match fleet(&args.robot, args.class.as_ref()) {
         Ok(all) => all,
         Err(error) => {
-            say(&error.to_string());
+            say(&told(&error.to_string(), args.language));
             return 2;
         }
     };
     let mut worst = 0;
-    for (member, told) in all.iter().zip(each(&all, work)) {
-        let code = match told {
+    for (member, done) in all.iter().zip(each(&all, work)) {
+        let code = match done {
             Ok((code, text)) => {
                 // Who has stopped reading knows enough.
                 let _ = io::stdout().write_all(harmless(&text).as_bytes());
                 code
             }
             Err(error) => {
-                say(&member.complaint(&error));
+                say(&member.complaint(&error, args.language));
                 2
             }
         };
@@ -277,17 +294,19 @@ struct Sent {
 /// # Errors
 /// A file cannot be sent, or a robot has not got everything.
 pub(crate) fn send(args: &SendArgs) -> Result<u8, Refusal> {
-    let files = read(args)?;
-    let all = fleet(&args.robot, args.class.as_ref())?;
-    let results = each(&all, |member| send_to(member, &files, args.run.as_deref()));
-    let _ = io::stdout().write_all(table(&all, &results, files.len()).as_bytes());
+    let locale = args.language;
+    let refused = |error: Error| Refusal::new(told(&error.to_string(), locale));
+    let files = read(args).map_err(refused)?;
+    let all = fleet(&args.robot, args.class.as_ref()).map_err(refused)?;
+    let results = each(&all, |member| send_to(member, &files, args));
+    let table = table(&all, &results, (files.len(), locale));
+    let _ = io::stdout().write_all(table.as_bytes());
     let failed = results.iter().filter(|sent| sent.result.is_err()).count();
     match failed {
         0 => Ok(0),
-        _ => Err(Refusal::new(format!(
-            "{failed} of {} robots have not got everything",
-            all.len()
-        ))),
+        _ => Err(Refusal::new(
+            words::not_all(failed, all.len()).in_locale(locale),
+        )),
     }
 }
 
@@ -295,20 +314,19 @@ fn read(args: &SendArgs) -> Result<Vec<Upload>, Error> {
     let files: Vec<_> = args
         .files
         .iter()
-        .map(|path| Upload::read(path, None))
+        .map(|path| Upload::read(path, None, args.language))
         .collect::<Result<_, _>>()?;
     for (index, file) in files.iter().enumerate() {
         if files[..index].iter().any(|other| other.name == file.name) {
-            return Err(Error::Refused(format!(
-                "two files are called {}: on a robot all are in one folder",
-                file.name
-            )));
+            let words = words::twice(&file.name);
+            return Err(Error::Refused(words.in_locale(args.language).to_owned()));
         }
     }
     Ok(files)
 }
 
-fn send_to(target: &Member, files: &[Upload], run: Option<&str>) -> Sent {
+fn send_to(target: &Member, files: &[Upload], args: &SendArgs) -> Sent {
+    let locale = args.language;
     let mut count = 0;
     let mut work = || {
         let mut link = target.at.clone()?.connect()?;
@@ -323,32 +341,36 @@ fn send_to(target: &Member, files: &[Upload], run: Option<&str>) -> Sent {
             })?;
             count += 1;
             let name = &file.name;
-            let _ = writeln!(
-                io::stderr(),
-                "{target}: {name} is sent, {count} of {}",
-                files.len()
-            );
+            let words = words::is_sent(name, count, files.len());
+            let _ = writeln!(io::stderr(), "{target}: {}", words.in_locale(locale));
         }
-        match run {
-            Some(name) => start(&mut link, name, None).map(|()| format!("{name} runs")),
-            None => Ok("sent".to_owned()),
-        }
+        let words = match &args.run {
+            Some(name) => {
+                link.speak(locale);
+                start(&mut link, name, None)?;
+                words::runs(name)
+            }
+            None => words::sent(),
+        };
+        Ok(words.in_locale(locale).to_owned())
     };
     let result = work();
     Sent { count, result }
 }
 
 /// A line for each robot, in columns.
-fn table(all: &[Member], results: &[Sent], files: usize) -> String {
+fn table(all: &[Member], results: &[Sent], (files, locale): (usize, Locale)) -> String {
     let names: Vec<_> = all.iter().map(Member::to_string).collect();
     let letters = |name: &String| name.chars().count();
-    let width = names.iter().map(letters).max().unwrap_or(0).max(5);
-    let mut text = format!("{:<width$}  {:<8}  RESULT\n", "ROBOT", "FILES");
+    let [robot, sent, result] = words::columns(locale);
+    let least = robot.chars().count();
+    let width = names.iter().map(letters).max().unwrap_or(0).max(least);
+    let mut text = format!("{robot:<width$}  {sent:<8}  {result}\n");
     for (name, sent) in names.iter().zip(results) {
-        let files = format!("{} of {files}", sent.count);
+        let files = words::of(sent.count, files).in_locale(locale).to_owned();
         let result = match &sent.result {
             Ok(done) => harmless(done),
-            Err(why) => format!("FAILED: {}", harmless(&why.to_string()).replace('\n', " ")),
+            Err(why) => harmless(&words::failed(&why.to_string(), locale)).replace('\n', " "),
         };
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{name:<width$}  {files:<8}  {result}");
@@ -401,7 +423,7 @@ mod tests {
         let why = all[1].at.clone().expect_err("it does not run");
         assert!(
             all[1]
-                .complaint(&why)
+                .complaint(&why, Locale::English)
                 .starts_with("sim: /none/robot: no virtual robot"),
             "{why}"
         );
@@ -447,7 +469,7 @@ mod tests {
             },
         ];
         assert_eq!(
-            table(&all, &results, 2),
+            table(&all, &results, (2, Locale::English)),
             "ROBOT          FILES     RESULT\na              2 of 2    x.js runs\n192.168.77.10  0 of 2    FAILED: it burns\n"
         );
     }

@@ -5,6 +5,7 @@
 use crate::error::Error;
 use crate::limits;
 use frame::{Decoder, encode};
+use lang_text::problem::Locale;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpStream};
@@ -149,6 +150,15 @@ impl Link {
         parts
             .iter()
             .for_each(|part| self.unsent.extend_from_slice(part));
+    }
+
+    /// Has the robot say what it says of programs of blocks in this language, if it is another one than robots speak when
+    /// nobody asks for any. An older robot passes over that.
+    pub(super) fn speak(&mut self, locale: Locale) {
+        match locale {
+            Locale::English => {}
+            Locale::Russian => self.ask(&[b"language:", locale.name().as_bytes()]),
+        }
     }
 
     /// The next message that has come.

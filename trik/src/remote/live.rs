@@ -74,15 +74,20 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
         Some(target) => target.clone(),
         None => the_one()?,
     };
-    let (is_changed, text) = assign(&target, &args.assignment)?;
+    let (is_changed, text) = assign(&target, &args.assignment, args.language)?;
     say(&harmless(&told(&text, args.language)));
     Ok(u8::from(!is_changed))
 }
 
-/// Assigns a variable; whether it is assigned, and what the robot says of it.
-pub(super) fn assign(target: &Target, assignment: &str) -> Result<(bool, String), Error> {
+/// Assigns a variable; whether it is assigned, and what the robot says of it, in this language as far as it knows that.
+pub(super) fn assign(
+    target: &Target,
+    assignment: &str,
+    locale: Locale,
+) -> Result<(bool, String), Error> {
     let name = assignment.split('=').next().unwrap_or_default().trim();
     let mut link = target.connect()?;
+    link.speak(locale);
     link.ask(&[b"set:", assignment.as_bytes()]);
     let deadline = Instant::now() + ms(limits::ANSWER_MS);
     while Instant::now() < deadline {
@@ -165,7 +170,7 @@ impl Watched {
             return None;
         }
         self.seen = now;
-        match Upload::read(&self.path, self.diagram.as_deref()) {
+        match Upload::read(&self.path, self.diagram.as_deref(), self.locale) {
             Ok(upload) => {
                 let patch = format!("patch:{}:{}", self.gone.word(), upload.name);
                 Some([upload.request(), patch.into_bytes()])

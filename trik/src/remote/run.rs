@@ -74,7 +74,7 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
         true => Some(Watched::new(&args.file, diagram, args.gone, args.language)?),
         false => None,
     };
-    let upload = Upload::read(&args.file, diagram)?;
+    let upload = Upload::read(&args.file, diagram, args.language)?;
     let target = match &args.robot {
         Some(target) => target.clone(),
         None => the_one()?,
@@ -94,6 +94,7 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
     let signals = SignalFd::with_flags(&mask, flags).map_err(own)?;
     // A question may be the first thing that it does.
     link.ask(&[b"questions"]);
+    link.speak(args.language);
     start(&mut link, &upload.name, Some(signals.as_fd()))?;
     let mut session = Session {
         link,

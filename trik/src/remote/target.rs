@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 const PORT: u16 = 8888;
 
 /// There is a tree, and nothing that says whose: somebody has removed that under a robot that runs.
-const UNKNOWN: &str = "a tree is mounted there, and nothing says where its robot takes programs: trik up did not mount it, or the folder trik in XDG_RUNTIME_DIR, or /tmp/trik-UID without that, was removed or is another one here; name the robot by its address, as trik up has printed it, or end it and start it again";
-const NOT_MOUNTED: &str =
+pub(super) const UNKNOWN: &str = "a tree is mounted there, and nothing says where its robot takes programs: trik up did not mount it, or the folder trik in XDG_RUNTIME_DIR, or /tmp/trik-UID without that, was removed or is another one here; name the robot by its address, as trik up has printed it, or end it and start it again";
+pub(super) const NOT_MOUNTED: &str =
     "no virtual robot of yours is mounted there; robots in the network have names and addresses";
 
 /// A robot as somebody has named it.

@@ -2,13 +2,15 @@
 //!
 //! Owns which files are sent, and what a robot answers to them. `link` is the connection.
 
+mod words;
+
 use super::link::{Link, Message, ms};
 use super::output::harmless;
 use crate::diagrams::flow::{is_of_blocks, unread, with_main};
 use crate::diagrams::save::Unreadable;
 use crate::error::Error;
 use crate::limits;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::os::fd::BorrowedFd;
 use std::path::Path;
@@ -24,50 +26,47 @@ pub(super) struct Upload {
 }
 
 impl Upload {
-    /// Reads a file. `diagram` is the main diagram of it that is run, if it is not the first.
+    /// Reads a file. `diagram` is the main diagram of it that is run, if it is not the first; what is wrong is told in this
+    /// language.
     ///
     /// # Errors
     /// It cannot be read, is too long, its name is none for a robot, or it has no such diagram.
-    pub(super) fn read(path: &Path, diagram: Option<&str>) -> Result<Self, Error> {
-        let bad = |why: String| Error::file(path, why);
+    pub(super) fn read(path: &Path, diagram: Option<&str>, locale: Locale) -> Result<Self, Error> {
+        let bad = |why: Words| Error::file(path, why.in_locale(locale));
         let name = path.file_name().and_then(|name| name.to_str());
-        let name =
-            name.ok_or_else(|| bad("its name is no text that a robot understands".to_owned()))?;
+        let name = name.ok_or_else(|| bad(words::no_name()))?;
         // The same rule as on the robot, and a colon would end the name on the way.
         trikd::scripts::locate(Path::new("/"), name.as_bytes())
-            .map_err(|why| Error::Refused(why.to_string()))?;
+            .map_err(|why| Error::Refused(why.words().in_locale(locale).to_owned()))?;
         if name.contains(':') {
-            return Err(bad(
-                "a program with ':' in its name cannot be sent".to_owned()
-            ));
+            return Err(bad(words::colon()));
         }
-        let data = std::fs::metadata(path).map_err(|error| bad(unread_file(&error)))?;
+        let data = std::fs::metadata(path).map_err(|error| bad(words::unread(&error)))?;
         if !data.is_file() {
-            return Err(bad("not a file".to_owned()));
+            return Err(bad(words::no_file()));
         }
         let most = match is_of_blocks(path) {
             true => limits::BLOCKS_UPLOAD_BYTES_MAX,
             false => limits::UPLOAD_BYTES_MAX,
         };
         if data.len() > most {
-            return Err(bad(too_long(data.len(), most)));
+            return Err(bad(words::too_long(data.len(), most)));
         }
         let mut content = Vec::new();
-        let file = std::fs::File::open(path).map_err(|error| bad(error.to_string()))?;
+        let file = std::fs::File::open(path).map_err(|error| bad(words::unread(&error)))?;
         // It may have grown meanwhile.
         std::io::Read::read_to_end(&mut std::io::Read::take(file, most), &mut content)
-            .map_err(|error| bad(error.to_string()))?;
+            .map_err(|error| bad(words::unread(&error)))?;
         if let Some(diagram) = diagram {
             if !is_of_blocks(path) {
-                let why =
-                    "--diagram is for diagrams (NAME.qrs, NAME.flow), and this is another program";
-                return Err(bad(why.to_owned()));
+                return Err(bad(words::no_diagram()));
             }
-            content = with_main(path, content, diagram).map_err(|why| unreadable(path, why))?;
+            content =
+                with_main(path, content, diagram).map_err(|why| unreadable(path, why, locale))?;
             // Written anew, it may be longer than it was.
             let length = content.len() as u64;
             if length > most {
-                return Err(bad(too_long(length, most)));
+                return Err(bad(words::too_long(length, most)));
             }
         }
         let name = name.to_owned();
@@ -135,31 +134,13 @@ impl Upload {
     }
 }
 
-/// Why a program of so many bytes is not sent, where so many can be.
-fn too_long(length: u64, most: u64) -> String {
-    format!(
-        "{length} bytes long, and a robot takes at most {most} in one message (about {} MiB)",
-        most.div_ceil(1 << 20)
-    )
-}
-
-/// Why a file cannot be read, without the system's number for it.
-fn unread_file(error: &std::io::Error) -> String {
-    match error.kind() == std::io::ErrorKind::NotFound {
-        true => "there is no such file".to_owned(),
-        false => error.to_string(),
-    }
-}
-
 /// Why the diagram that was asked for is not sent.
-fn unreadable(path: &Path, why: Unreadable) -> Error {
+fn unreadable(path: &Path, why: Unreadable, locale: Locale) -> Error {
     match why {
         Unreadable::File(why) | Unreadable::Diagram(why) => {
-            Error::file(path, harmless(why.in_locale(Locale::English)))
+            Error::file(path, harmless(why.in_locale(locale)))
         }
-        Unreadable::Save(problems) => {
-            Error::Refused(unread(path, &problems, Locale::English).join("\n"))
-        }
+        Unreadable::Save(problems) => Error::Refused(unread(path, &problems, locale).join("\n")),
     }
 }
 
@@ -219,6 +200,10 @@ pub(super) fn start(
 mod tests {
     use super::*;
 
+    fn read(path: &Path) -> Result<Upload, Error> {
+        Upload::read(path, None, Locale::English)
+    }
+
     #[test]
     fn a_file_that_no_robot_takes_is_refused_here() {
         let folder = tempfile::tempdir().expect("a directory");
@@ -233,29 +218,21 @@ mod tests {
             if name != "none.js" {
                 std::fs::write(dir.join(name), "x").expect(name);
             }
-            let refusal = Upload::read(&dir.join(name), None).unwrap_err().to_string();
+            let refusal = read(&dir.join(name)).unwrap_err().to_string();
             assert!(refusal.contains(why), "{name}: {refusal}");
         }
-        assert!(
-            Upload::read(&dir, None)
-                .unwrap_err()
-                .to_string()
-                .contains("not a file")
-        );
-        assert!(Upload::read(Path::new("/"), None).is_err());
+        assert!(read(&dir).unwrap_err().to_string().contains("not a file"));
+        assert!(read(Path::new("/")).is_err());
         let large = std::fs::File::create(dir.join("large")).expect("a file");
         large.set_len(limits::UPLOAD_BYTES_MAX + 1).expect("a hole");
         assert!(
-            Upload::read(&dir.join("large"), None)
-                .unwrap_err()
-                .to_string()
-                .contains(
-                    "268435457 bytes long, and a robot takes at most 268435456 in one message"
-                )
+            read(&dir.join("large")).unwrap_err().to_string().contains(
+                "268435457 bytes long, and a robot takes at most 268435456 in one message"
+            )
         );
         let blocks = std::fs::File::create(dir.join("large.qrs")).expect("a file");
         blocks.set_len(17 << 20).expect("a hole");
-        let refusal = Upload::read(&dir.join("large.qrs"), None).unwrap_err();
+        let refusal = read(&dir.join("large.qrs")).unwrap_err();
         let why =
             "17825792 bytes long, and a robot takes at most 16776192 in one message (about 16 MiB)";
         assert!(refusal.to_string().contains(why), "{refusal}");

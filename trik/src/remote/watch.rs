@@ -74,6 +74,7 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         None => the_one()?,
     };
     let mut link = target.connect()?;
+    link.speak(args.language);
     let until = args
         .seconds
         .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));

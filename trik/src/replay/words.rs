@@ -2,12 +2,32 @@
 //!
 //! Owns the lines; pure.
 
-use super::order::KEYS;
+use super::order::{BadOrder, KEYS};
 use super::outputs::Difference;
 use super::player::State;
 use super::recording::Channel;
+use lang_text::problem::Words;
 use std::fmt::Write;
 use std::time::Duration;
+
+/// What a page is told that orders something of a world that was recorded.
+pub(super) fn no_orders() -> Words {
+    Words::new(
+        "what was recorded takes no orders",
+        "тем, что записано, нельзя распоряжаться",
+    )
+}
+
+/// What a page is told whose order to a player is none.
+pub(super) fn bad_order(why: &BadOrder) -> Words {
+    let russian = match why {
+        BadOrder::Word(word) => format!(
+            "неизвестное слово '{word}': pause, go, step [NUMBER], speed NUMBER, seek TIME, loop on, loop off"
+        ),
+        BadOrder::Argument(wanted) => format!("ожидается {wanted}"),
+    };
+    Words::new(why.to_string(), russian)
+}
 
 /// Cells of the bar.
 const BAR: usize = 40;

@@ -119,7 +119,7 @@ impl World for RecordedWorld {
     }
 
     fn order(&self, _: &str) -> Result<(), Refused> {
-        Err(Refused("what was recorded takes no orders".to_owned()))
+        Err(Refused(super::words::no_orders()))
     }
 
     fn takes_orders(&self) -> bool {

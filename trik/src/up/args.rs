@@ -3,9 +3,11 @@
 //! Owns the options and the forms of their values. Knows nothing of what they do.
 
 use crate::error::Error;
+use crate::language;
 use crate::limits;
 use clap::Args;
 use lang_dcml::models;
+use lang_text::problem::Locale;
 use sim::body::rolling::Actuator;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -114,6 +116,17 @@ pub(crate) struct ServingArgs {
     /// Where uploaded programs are kept [default: a directory that is removed with the robot].
     #[arg(long, value_name = "DIR")]
     pub scripts: Option<PathBuf>,
+    /// Language of what the robot says of programs of blocks, and of what is wrong with a world: en or ru [default: that of
+    /// LANG].
+    #[arg(long, value_name = "LANGUAGE", value_parser = language::locale)]
+    pub language: Option<Locale>,
+}
+
+impl ServingArgs {
+    /// The language that was asked for, or that of the system.
+    pub(crate) fn locale(&self) -> Locale {
+        self.language.unwrap_or_else(language::of_system)
+    }
 }
 
 /// The name of a robot that there is, or of a model.

@@ -3,10 +3,11 @@
 //! Owns which orders a page may give. Looking and moving is the simulator's part, faults are files of the board, as `trik fault`
 //! writes them, and a world that a person drops comes in the order itself: a page names no files of this machine.
 
-use super::world;
+use super::{words, world};
 use crate::fault;
 use page::world::{Refused, World};
 use sim::arena::floor::picture;
+use sim::faults::Faults;
 use sim::show::Watcher;
 use std::path::PathBuf;
 
@@ -26,21 +27,20 @@ impl Around {
     /// `fault DEVICE KIND NUMBER`; without a kind the device is whole again.
     fn fault(&self, rest: &str) -> Result<(), Refused> {
         let (device, text) = rest.split_once(' ').unwrap_or((rest, ""));
-        fault::set(&self.board, device, text.trim()).map_err(refused)
+        let text = text.trim();
+        let checked = Faults::default().set(device, text);
+        checked.map_err(|why| Refused(why.words()))?;
+        let done = fault::set(&self.board, device, text);
+        done.map_err(|why| Refused(words::unwritten(&why)))
     }
 
     /// `load BASE64`: the bytes of a world model or a project.
     fn load(&self, base64: &str) -> Result<(), Refused> {
-        let bytes = picture::base64(base64).map_err(refused)?;
-        let found = world::of(bytes)
-            .map_err(|why| refused(format!("no world can be read from this file: {why}")))?;
+        let bytes = picture::base64(base64).map_err(|why| Refused(why.words()))?;
+        let found = world::of(bytes).map_err(|why| Refused(words::unfit(&why)))?;
         let entered = self.watcher.enter(&found.field, found.locks);
-        entered.map_err(refused)
+        entered.map_err(|why| Refused(why.words()))
     }
-}
-
-fn refused(why: impl std::fmt::Display) -> Refused {
-    Refused(why.to_string())
 }
 
 impl World for Around {
@@ -58,12 +58,15 @@ impl World for Around {
     }
 
     fn order(&self, words: &str) -> Result<(), Refused> {
-        let words = words.trim();
-        match words.split_once(' ') {
+        let order = words.trim();
+        match order.split_once(' ') {
             Some(("fault", rest)) => self.fault(rest.trim()),
             Some(("load", rest)) => self.load(rest),
-            Some(("field", _)) => Err(refused("drop the file of a world on this page instead")),
-            _ => self.watcher.order(words).map_err(refused),
+            Some(("field", _)) => Err(Refused(words::no_files())),
+            _ => {
+                let done = self.watcher.order(order);
+                done.map_err(|why| Refused(why.words()))
+            }
         }
     }
 }

@@ -64,6 +64,7 @@ impl Trikd {
         if std::env::var_os("TRIKD_LOG").is_none() {
             list.push("--log=info,clients=warn".into());
         }
+        list.push(format!("--language={}", args.locale().name()).into());
         if args.box_minutes > 0 {
             list.push(format!("--box-minutes={}", args.box_minutes).into());
             list.push(format!("--box-mib={}", limits::BOX_MIB).into());

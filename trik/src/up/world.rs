@@ -2,35 +2,28 @@
 //!
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
+use super::words;
 use crate::error::Error;
-use crate::input::{self, Unread};
+use crate::input::{self, words as unread_words};
 use crate::limits;
-use lang_text::problem::Problem;
+use lang_text::problem::{Locale, Problem, Words};
 use sim::field::{Field, Locks};
-use std::fmt;
 use std::path::Path;
 
-/// The field of a world model, or of a project, and what the project locks.
+/// The field of a world model, or of a project, and what the project locks; what is wrong is told in this language.
 ///
 /// # Errors
 /// The file cannot be read, or there is no world in it.
-pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
-    let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
-    let refused = |why: &dyn std::fmt::Display| Error::file(path, why);
-    let bytes = input::read(path, limits::WORLD_FILE_BYTES_MAX).map_err(|unread| match unread {
-        Unread::Missing => refused(&"there is no such file"),
-        Unread::Directory => refused(&"this is a directory: name a world or a project"),
-        Unread::TooLong => refused(&format!(
-            "longer than {} MiB",
-            limits::WORLD_FILE_BYTES_MAX >> 20
-        )),
-        Unread::Silent => refused(&"nothing comes out of this FIFO or device: name a file"),
-        Unread::Failed(error) => refused(&error),
-    })?;
+pub(crate) fn read(path: &Path, locale: Locale) -> Result<(Field, Locks), Error> {
+    let say = |problem: &Problem| format!("{}: {}", path.display(), problem.in_locale(locale));
+    let refused = |why: &Words| Error::file(path, why.in_locale(locale));
+    let most = limits::WORLD_FILE_BYTES_MAX;
+    let bytes = input::read(path, most)
+        .map_err(|unread| refused(&unread_words::why(&unread, most, words::A_WORLD)))?;
     let found = of(bytes).map_err(|why| match why {
         Unfit::File(why) => refused(&why),
         Unfit::World(problems) => {
-            let lines: Vec<String> = problems.iter().map(|one| say(one)).collect();
+            let lines: Vec<String> = problems.iter().map(say).collect();
             Error::Refused(lines.join("\n"))
         }
     })?;
@@ -53,19 +46,9 @@ pub(crate) struct FoundWorld {
 /// Why there is no world in bytes.
 pub(crate) enum Unfit {
     /// It is another kind of file.
-    File(String),
+    File(Words),
     /// What is wrong in it.
     World(Vec<Problem>),
-}
-
-impl fmt::Display for Unfit {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File(why) => out.write_str(why),
-            // One is enough for a page.
-            Self::World(problems) => problems.iter().take(1).try_for_each(|one| one.fmt(out)),
-        }
-    }
 }
 
 /// The world in the bytes of a file.
@@ -79,14 +62,15 @@ pub(crate) fn of(bytes: Vec<u8>) -> Result<FoundWorld, Unfit> {
         == Some(&b'<');
     let mut locks = Locks::default();
     let (text, blobs) = if is_text {
-        let text = String::from_utf8(bytes).map_err(|error| Unfit::File(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|_| Unfit::File(unread_words::no_text()))?;
         (text, None)
     } else {
         let read = lang_diagram::read::read(&bytes).map_err(Unfit::World)?;
         let project = read.project;
         locks = Locks::of(&project.meta);
-        let none = "there is no world in this project; give a world model, FILE.xml";
-        let world = project.world.ok_or_else(|| Unfit::File(none.to_owned()))?;
+        let world = project
+            .world
+            .ok_or_else(|| Unfit::File(words::no_world()))?;
         (world, project.blobs)
     };
     let mut opened = Field::read(&text).map_err(Unfit::World)?;

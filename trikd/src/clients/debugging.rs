@@ -7,6 +7,7 @@ use crate::limits;
 use crate::outbox::Latest;
 use frame::encode;
 use lang_text::json::Object;
+use lang_text::problem::Locale;
 use std::net::SocketAddr;
 use std::rc::Rc;
 
@@ -31,6 +32,8 @@ pub struct OrderId {
     pub client: u32,
     /// What the client calls it.
     pub tag: u32,
+    /// The language that the client wants; none: that of the robot.
+    pub locale: Option<Locale>,
 }
 
 /// The frame of something for clients that debug.
@@ -219,12 +222,14 @@ mod tests {
             OrderId {
                 client: two.id,
                 tag: 7,
+                locale: None,
             },
             "a \"b\"",
         );
         clients.debug_done(OrderId {
             client: two.id,
             tag: 8,
+            locale: None,
         });
         assert_eq!(
             said(&two),

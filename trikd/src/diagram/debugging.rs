@@ -68,6 +68,20 @@ impl Debugging {
         answer
     }
 
+    /// The same, with an answer in this language.
+    pub(super) fn answer(
+        &mut self,
+        order: Tagged<'_>,
+        locale: Locale,
+        now: u32,
+        (robot, watch): (&mut Robot<'_>, &mut Watch),
+    ) -> String {
+        let own = self.desk.speak(locale);
+        let answer = self.order(order, now, robot, watch);
+        self.desk.speak(own);
+        answer
+    }
+
     /// The client that was in control is gone: a program that is stopped stays so, with its motors at rest whatever was asked for;
     /// another one loses its debugger.
     pub(super) fn left(&mut self, now: u32, robot: &mut Robot<'_>, watch: &mut Watch) {

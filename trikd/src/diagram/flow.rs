@@ -165,7 +165,7 @@ impl Flow {
                 | Incoming::Reply(..)
                 | Incoming::Web
                 | Incoming::Patch(..)
-                | Incoming::Set(_)
+                | Incoming::Set(..)
                 | Incoming::Debug { .. }
                 | Incoming::DebugLeft
                 | Incoming::Direct(_) => early.push_back(message),
@@ -212,23 +212,30 @@ impl Flow {
                 self.keep_diary(is_wanted);
             }
             // There are no threads whose block could be gone.
-            Incoming::Patch(_, path) => {
+            Incoming::Patch(_, path, locale) => {
                 // Blocks have other numbers then.
                 if self.diary.as_ref().is_some_and(Diary::has_news) {
                     let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
                     watch.last_of_flow(machine, diary, now, host)?;
                 }
-                let answer = self.patch(&path, robot, watch.locale());
+                let answer = self.patch(&path, robot, locale);
                 host.changed(answer.is_changed, &answer.text)?;
                 self.report(now, true, host)?;
             }
-            Incoming::Set(text) => {
-                let answer = self.set(&text, watch.locale());
+            Incoming::Set(text, locale) => {
+                let answer = self.set(&text, locale);
                 host.changed(answer.is_changed, &answer.text)?;
                 self.report(now, true, host)?;
             }
-            Incoming::Debug { client, tag, order } => {
+            Incoming::Debug {
+                client,
+                tag,
+                locale,
+                order,
+            } => {
+                let own = self.desk.speak(locale);
                 let answer = self.desk.order((tag, &order));
+                self.desk.speak(own);
                 self.motors.settle(self.desk.is_at_rest(), robot);
                 host.debug(client, &answer)?;
                 self.report(now, true, host)?;
@@ -238,7 +245,9 @@ impl Flow {
                 self.motors.settle(self.desk.is_at_rest(), robot);
                 self.report(now, true, host)?;
             }
-            Incoming::Direct(_) => host.error("a data-flow program takes no direct commands")?,
+            Incoming::Direct(_) => {
+                host.error(super::words::no_direct().in_locale(watch.locale()))?
+            }
             // The caller knows.
             Incoming::Gone => {}
         }
@@ -259,7 +268,7 @@ impl Flow {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let source = match Source::open(path, locale) {
             Ok(source) => source,
-            Err(why) => return Answer::unchanged(&name, &why.to_string()),
+            Err(why) => return Answer::unchanged(&name, &why.in_locale(locale)),
         };
         let refused = |why: Refused| Answer::unchanged(&name, &explained(&why, &source, locale));
         let version = match Version::of(&source.project) {

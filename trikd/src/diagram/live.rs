@@ -50,16 +50,16 @@ pub(super) fn name(path: &Path) -> String {
 pub(super) fn prepared(path: &Path, locale: Locale) -> Result<Project, Answer> {
     let name = name(path);
     let save = read_save(path).and_then(|bytes| opened(&bytes, locale));
-    let save = save.map_err(|why| Answer::unchanged(&name, &why.to_string()))?;
+    let save = save.map_err(|why| Answer::unchanged(&name, &why.in_locale(locale)))?;
     let checked = Version::mistakes(&save.project, World::Robot);
     checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
     Ok(save.project)
 }
 
-/// Replaces the program that runs by a project that is prepared, whole or not at all.
+/// Replaces the program that runs by a project that is prepared, whole or not at all; the answer is in this language.
 pub(super) fn patch(
     session: &mut Session,
-    (when_gone, name, project): (WhenGone, &str, &Project),
+    (when_gone, name, project, locale): (WhenGone, &str, &Project, Locale),
     robot: &mut dyn Brick,
     watch: &mut Watch,
 ) -> Answer {
@@ -67,7 +67,7 @@ pub(super) fn patch(
     let patched = version.and_then(|version| session.patch(&version, when_gone, robot, watch));
     match patched {
         Ok(patched) => Answer::changed(name, &patched.to_string()),
-        Err(why) => Answer::unchanged(name, &explained(&why, watch.locale())),
+        Err(why) => Answer::unchanged(name, &explained(&why, locale)),
     }
 }
 
@@ -81,10 +81,10 @@ fn explained(why: &Refused, locale: Locale) -> String {
     }
 }
 
-/// Assigns a variable: `NAME=EXPRESSION`.
+/// Assigns a variable: `NAME=EXPRESSION`; the answer is in this language.
 pub(super) fn set(
     session: &mut Session,
-    text: &str,
+    (text, locale): (&str, Locale),
     robot: &mut dyn Brick,
     watch: &mut Watch,
 ) -> Answer {
@@ -96,6 +96,6 @@ pub(super) fn set(
             let value = value.map_or_else(String::new, |value| value.printed().to_string());
             Answer::changed(name, &format!("{name} = {value}"))
         }
-        Err(why) => Answer::unchanged(name, &why.in_locale(watch.locale())),
+        Err(why) => Answer::unchanged(name, &why.in_locale(locale)),
     }
 }

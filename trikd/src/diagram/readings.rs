@@ -2,12 +2,12 @@
 //!
 //! Owns the open files of the sensors that were read, and the heading that counts as 0. A reading that fails is none.
 
+use super::robot::Trouble;
 use crate::brick::Brick;
 use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
 use crate::limits;
 use lang_diagram::ports::{Device, GamepadPart, ObjectPart, Port};
 use std::collections::HashMap;
-use std::io;
 use std::time::{Duration, Instant};
 
 /// Where the heading stands in the numbers of a gyroscope, in millidegrees.
@@ -114,10 +114,10 @@ impl<'a> Readings<'a> {
         self.cameras.get(mode)
     }
 
-    pub(super) fn start_camera(&mut self, mode: &str, shows: bool) -> io::Result<()> {
+    pub(super) fn start_camera(&mut self, mode: &str, shows: bool) -> Result<(), Trouble> {
         match self.camera(mode) {
-            Some(camera) => camera.start(shows),
-            None => Err(io::Error::other("the robot has no such camera")),
+            Some(camera) => Ok(camera.start(shows)?),
+            None => Err(Trouble::NoCamera),
         }
     }
 
@@ -128,34 +128,34 @@ impl<'a> Readings<'a> {
     }
 
     /// Looks for what is in the middle of the picture, now or as soon as the sensor hears.
-    pub(super) fn detect(&mut self, mode: &str) -> io::Result<()> {
+    pub(super) fn detect(&mut self, mode: &str) -> Result<(), Trouble> {
         let until = Instant::now() + Duration::from_millis(limits::DETECT_MS);
         self.unheard = Some((mode.to_owned(), until));
         self.detect_again()
     }
 
     /// A sensor that was started a moment ago does not hear yet.
-    pub(super) fn detect_again(&mut self) -> io::Result<()> {
+    pub(super) fn detect_again(&mut self) -> Result<(), Trouble> {
         let Some((mode, until)) = self.unheard.take() else {
             return Ok(());
         };
         match self.camera(&mode) {
-            None => Err(io::Error::other("the robot has no such camera")),
+            None => Err(Trouble::NoCamera),
             Some(camera) if camera.detect()? => Ok(()),
             Some(_) if Instant::now() < until => {
                 self.unheard = Some((mode, until));
                 Ok(())
             }
-            Some(_) => Err(io::Error::other("the sensor does not run")),
+            Some(_) => Err(Trouble::NoDetector),
         }
     }
 
     /// The encoder begins at 0 again.
-    pub(super) fn reset(&mut self, port: Port) -> io::Result<()> {
+    pub(super) fn reset(&mut self, port: Port) -> Result<(), Trouble> {
         if let From::Encoder(encoder) = self.from(port) {
-            encoder.reset()
+            Ok(encoder.reset()?)
         } else {
-            Err(io::Error::other("the robot has no such encoder"))
+            Err(Trouble::NoEncoder)
         }
     }
 

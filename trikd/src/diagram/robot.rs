@@ -5,9 +5,10 @@
 
 use super::asking::Asking;
 use super::readings::Readings;
+use super::words::trouble;
 use crate::brick::Brick;
 use crate::brick::actuators::Motor;
-use crate::display::Display;
+use crate::display::{Display, Unshown};
 use crate::host::Host;
 use crate::limits;
 use crate::program::child;
@@ -18,12 +19,46 @@ use lang_text::problem::{Locale, Problem};
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoroshiro64Star;
 use std::collections::{HashMap, HashSet, VecDeque};
-use std::fmt::Display as Show;
 use std::fs::OpenOptions;
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
+
+/// What keeps a device from doing what a block tells it.
+#[derive(Debug)]
+pub enum Trouble {
+    /// There is no motor at this port.
+    NoMotor,
+    /// There is no such camera.
+    NoCamera,
+    /// There is no encoder at this port.
+    NoEncoder,
+    /// The sensor that was to look does not hear.
+    NoDetector,
+    /// [`limits::DIAGRAM_COMMANDS`] run.
+    ManyCommands,
+    /// What is to be read is no file.
+    NoFile,
+    /// It is longer than [`limits::DIAGRAM_FILE_BYTES`].
+    LongFile,
+    /// What the system says.
+    System(io::Error),
+    /// The display.
+    Display(Unshown),
+}
+
+impl From<io::Error> for Trouble {
+    fn from(error: io::Error) -> Self {
+        Self::System(error)
+    }
+}
+
+impl From<Unshown> for Trouble {
+    fn from(why: Unshown) -> Self {
+        Self::Display(why)
+    }
+}
 
 /// The robot of one diagram.
 pub struct Robot<'a> {
@@ -105,12 +140,14 @@ impl<'a> Robot<'a> {
     }
 
     /// Tells a failure, each once.
-    fn note(&mut self, what: &str, result: Result<(), impl Show>) {
+    fn note(&mut self, what: &str, result: Result<(), impl Into<Trouble>>) {
         if let Err(why) = result
             && self.told.len() < limits::DIAGRAM_WARNINGS
             && self.told.insert(what.to_owned())
         {
             // The daemon may be gone; then this process ends soon.
+            let words = trouble(&why.into());
+            let why = words.in_locale(self.locale);
             let _ = self.host.info(&format!("{what}: {why}"));
         }
     }
@@ -126,7 +163,7 @@ impl<'a> Robot<'a> {
 
     fn set_power(&mut self, port: Port, power: i32) {
         let result = match self.motor(port) {
-            None => return self.note(port.name(), Err("the robot has no such motor")),
+            None => return self.note(port.name(), Err(Trouble::NoMotor)),
             Some(motor) => motor.set_power(power.into()),
         };
         self.note(port.name(), result);
@@ -141,7 +178,7 @@ impl<'a> Robot<'a> {
     /// Starts a command of the system, or a line of JavaScript, beside the program; it ends with the program.
     fn start(&mut self, command: &str, is_code: bool) {
         if self.commands.len() >= limits::DIAGRAM_COMMANDS {
-            return self.note("system", Err("too many commands run at once"));
+            return self.note("system", Err(Trouble::ManyCommands));
         }
         let mut process = if is_code {
             let mut process = child::this_program();
@@ -184,20 +221,19 @@ impl<'a> Robot<'a> {
 }
 
 /// The text of a file, unless it is too long or no file at all: a FIFO would keep the program waiting.
-fn read_text(file: &str) -> std::io::Result<String> {
-    let invalid = |why: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, why.to_owned());
+fn read_text(file: &str) -> Result<String, Trouble> {
     let opened = OpenOptions::new()
         .read(true)
         .custom_flags(nix::libc::O_NONBLOCK)
         .open(file)?;
     if !opened.metadata()?.is_file() {
-        return Err(invalid("this is no file"));
+        return Err(Trouble::NoFile);
     }
     let mut text = String::new();
     let limit = limits::DIAGRAM_FILE_BYTES;
     opened.take(limit + 1).read_to_string(&mut text)?;
     if text.len() as u64 > limit {
-        return Err(invalid("longer than 1 MiB"));
+        return Err(Trouble::LongFile);
     }
     Ok(text)
 }

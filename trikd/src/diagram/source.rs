@@ -3,7 +3,7 @@
 //! Owns how what is wrong with it is told: of a text by line and column. Knows no robot; what is wrong is found in
 //! `lang_dataflow`.
 
-use super::{errors_among, opened, read_save};
+use super::{errors_among, opened, read_save, words};
 use crate::engine::NoDiagram;
 use crate::scripts::ending;
 use lang_dataflow::project::Project;
@@ -66,7 +66,9 @@ impl Source {
         }
         let opened = opened(&bytes, locale)?;
         if language(&opened.save) != Language::Dataflow {
-            return Err(NoDiagram::Problems(vec![OTHER_LANGUAGE.to_owned()]));
+            return Err(NoDiagram::Problems(vec![
+                words::other_language().in_locale(locale).to_owned(),
+            ]));
         }
         let source = Self::of_save(opened);
         match source.errors(&source.problems, locale) {
@@ -108,6 +110,3 @@ fn line(problem: &Problem, at: Option<Position>, locale: Locale) -> String {
     };
     format!("{}:{} {}", at.line, at.column, problem.in_locale(locale))
 }
-
-/// Why a save with diagrams of control flow does not replace a data-flow program.
-const OTHER_LANGUAGE: &str = "its diagrams are of control flow, and a data-flow program runs: end that, and start the new one";

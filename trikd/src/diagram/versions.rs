@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 pub(super) struct Ready {
     pub(super) when_gone: WhenGone,
     pub(super) name: String,
+    /// Who has asked hears of it in this language.
+    pub(super) locale: Locale,
     /// The project, or what a person is told instead.
     pub(super) project: Result<Project, Answer>,
 }
@@ -28,28 +30,19 @@ pub(super) struct Ready {
 struct Coming {
     when_gone: WhenGone,
     path: PathBuf,
+    locale: Locale,
     project: Receiver<Result<Project, Answer>>,
 }
 
 /// Changes of a diagram that are asked for and not done.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Versions {
-    locale: Locale,
     coming: Option<Coming>,
     /// Changes that were asked for after it. The daemon has a limit for those that have no answer.
     waiting: VecDeque<Incoming>,
 }
 
 impl Versions {
-    /// None; people are told in this language what is wrong with one.
-    pub(super) fn new(locale: Locale) -> Self {
-        Self {
-            locale,
-            coming: None,
-            waiting: VecDeque::new(),
-        }
-    }
-
     /// Keeps a change until those before it are done; nothing is before it: it comes back.
     pub(super) fn keep(&mut self, change: Incoming) -> Option<Incoming> {
         if self.coming.is_none() {
@@ -68,9 +61,9 @@ impl Versions {
     }
 
     /// Begins to prepare a version.
-    pub(super) fn begin(&mut self, when_gone: WhenGone, path: PathBuf) {
+    pub(super) fn begin(&mut self, when_gone: WhenGone, path: PathBuf, locale: Locale) {
         let (sender, project) = channel();
-        let (file, locale) = (path.clone(), self.locale);
+        let file = path.clone();
         let prepare = move || {
             // The program may have ended meanwhile.
             let _ = sender.send(live::prepared(&file, locale));
@@ -81,6 +74,7 @@ impl Versions {
         self.coming = Some(Coming {
             when_gone,
             path,
+            locale,
             project,
         });
     }
@@ -100,14 +94,18 @@ impl Versions {
             Ok(project) => project,
             Err(TryRecvError::Empty) => return None,
             // No thread could be had, or it has failed: then here, and now.
-            Err(TryRecvError::Disconnected) => live::prepared(&coming.path, self.locale),
+            Err(TryRecvError::Disconnected) => live::prepared(&coming.path, coming.locale),
         };
         let Coming {
-            when_gone, path, ..
+            when_gone,
+            path,
+            locale,
+            ..
         } = self.coming.take()?;
         Some(Ready {
             when_gone,
             name: live::name(&path),
+            locale,
             project,
         })
     }
@@ -119,11 +117,15 @@ mod tests {
 
     #[test]
     fn changes_are_done_in_their_order() {
-        let mut versions = Versions::new(Locale::English);
-        let set = |text: &str| Incoming::Set(text.to_owned());
+        let mut versions = Versions::default();
+        let set = |text: &str| Incoming::Set(text.to_owned(), Locale::English);
         assert_eq!(versions.keep(set("n=1")), Some(set("n=1")));
         let folder = tempfile::tempdir().unwrap();
-        versions.begin(WhenGone::End, folder.path().join("none.qrs"));
+        versions.begin(
+            WhenGone::End,
+            folder.path().join("none.qrs"),
+            Locale::English,
+        );
         assert_eq!(versions.keep(set("n=2")), None);
         assert_eq!(versions.next(), None, "it overtakes no version");
         let ready = loop {

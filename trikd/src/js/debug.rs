@@ -6,6 +6,7 @@
 
 mod motors;
 mod orders;
+mod words;
 
 pub use orders::Orders;
 

@@ -69,15 +69,20 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
                 Incoming::Direct(text) => shared.deliver(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
                 Incoming::Web => shared.deliver(Some(MAIN), &Event::Web),
-                Incoming::Debug { client, tag, order } => {
-                    let answer = orders.order(&shared.debugger, tag, &order);
+                Incoming::Debug {
+                    client,
+                    tag,
+                    locale,
+                    order,
+                } => {
+                    let answer = orders.order(&shared.debugger, (tag, &order), locale);
                     shared.say(|output| output.debug(client, &answer));
                 }
                 Incoming::DebugLeft => orders.left(&shared.debugger),
                 // A program in a language of text has no blocks, and the daemon patches diagrams only.
                 Incoming::Watch(_)
                 | Incoming::Patch(..)
-                | Incoming::Set(_)
+                | Incoming::Set(..)
                 | Incoming::Reply(..) => {}
                 Incoming::Gone => return Ok(()),
             }

@@ -117,7 +117,7 @@ pub async fn autorun(parts: Autorun, restarts: u32) {
         }
     };
     note(count + 1);
-    parts.programs.send(Command::Run(path)).await;
+    parts.programs.send(Command::Run(path, None)).await;
     // The robot has survived this long, so the program is not what takes it down.
     sleep(Duration::from_millis(limits::AUTORUN_PROOF_MS)).await;
     note(0);

@@ -5,6 +5,7 @@
 use super::memory::Kills;
 use super::output::Lines;
 use super::python;
+use super::queue::Heard;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
 use crate::protocol::program::ToProgram;
@@ -229,14 +230,15 @@ fn words(
     })
 }
 
-/// Starts a program within its limits, in the folder of programs. It leads a session of its own.
+/// Starts a program within its limits, in the folder of programs. It leads a session of its own, and says what it says by
+/// itself in this language.
 ///
 /// # Errors
 /// There can be no more processes or descriptors.
 pub fn start(
     settings: &Settings,
     owner: Option<&Owner>,
-    language: Language,
+    (language, heard): (Language, Heard),
     path: Option<&Path>,
     reaper: &Reaper,
 ) -> io::Result<Child> {
@@ -269,7 +271,10 @@ pub fn start(
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
-        .env("TRIK_LANGUAGE", &settings.language)
+        .env(
+            "TRIK_LANGUAGE",
+            heard.map_or(settings.language.as_str(), |locale| locale.name()),
+        )
         .env("TRIK_COMPAT", settings.compat.name())
         .env("TRIK_ANSWER_S", settings.answer_s.to_string())
         // With it programs in all languages draw.

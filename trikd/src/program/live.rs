@@ -4,13 +4,14 @@
 
 use super::child::Language;
 use super::output::Manner;
-use super::queue::{Meeting, Wish};
+use super::queue::{Heard, Meeting, Wish};
 use super::says::cut;
 use super::{Cause, Current, Supervisor};
 use crate::clients::debugging::OrderId;
 use crate::protocol::news;
 use crate::protocol::program::{ALL, ToProgram, WhenGone};
-use crate::{limits, log};
+use crate::{diagram, limits, log};
+use lang_text::problem::Locale;
 use std::path::Path;
 
 impl Supervisor {
@@ -26,8 +27,14 @@ impl Supervisor {
         self.last.has_debugger() && runs.is_some_and(|current| current.child.runs())
     }
 
+    /// The language of an answer.
+    fn locale(&self, heard: Heard) -> Locale {
+        heard.unwrap_or_else(|| diagram::locale(&self.around.settings.language))
+    }
+
     /// A new version for the diagram that runs, which answers by itself.
-    pub(super) fn patch(&mut self, client: u32, when_gone: WhenGone, path: &Path) {
+    pub(super) fn patch(&mut self, client: u32, when_gone: WhenGone, path: &Path, heard: Heard) {
+        let locale = self.locale(heard);
         let name = self.name_of(path);
         let runs = match &self.current {
             Some(current) if self.runs_diagram() => Some(current.name.clone()),
@@ -40,6 +47,7 @@ impl Supervisor {
             Some(_) => {
                 let message = ToProgram::Patch {
                     when_gone,
+                    locale,
                     path: &file,
                 };
                 return self.change(client, &name, message);
@@ -104,10 +112,11 @@ impl Supervisor {
     }
 
     /// An assignment for the diagram that runs, `NAME=EXPRESSION`.
-    pub(super) fn set(&mut self, client: u32, text: &str) {
+    pub(super) fn set(&mut self, client: u32, text: &str, heard: Heard) {
+        let locale = self.locale(heard);
         let name = text.split('=').next().unwrap_or_default().trim();
         match self.runs_diagram() {
-            true => self.change(client, name, ToProgram::Set(text)),
+            true => self.change(client, name, ToProgram::Set { locale, text }),
             false => self.not_changed(client, name, news::NO_DIAGRAM),
         }
     }
@@ -132,7 +141,8 @@ impl Supervisor {
         let name = self.name_of(path);
         let file = path.display().to_string();
         let first = ToProgram::Debugged(&file);
-        self.start(Language::of(path), name, Some(path.to_owned()), first);
+        let language = Language::of(path);
+        self.start(language, name, Some(path.to_owned()), (first, asked.locale));
         match self.current {
             Some(_) => self.around.clients.debug_done(asked),
             None => self.refuse(asked, news::NOT_STARTED),
@@ -149,6 +159,7 @@ impl Supervisor {
             secret: place.secret.as_deref(),
             path: &file,
         };
+        let first = (first, asked.locale);
         self.start(Language::Python, name, Some(path.to_owned()), first);
         let Some(current) = &mut self.current else {
             return self.refuse(asked, news::NOT_STARTED);
@@ -175,11 +186,16 @@ impl Supervisor {
         if !self.takes_orders() {
             return self.refuse(asked, news::NO_DIAGRAM);
         }
+        let locale = self.locale(asked.locale);
         let Some(current) = &mut self.current else {
             return;
         };
-        let OrderId { client, tag } = asked;
-        let message = ToProgram::Debug { client, tag, order };
+        let message = ToProgram::Debug {
+            client: asked.client,
+            tag: asked.tag,
+            locale,
+            order,
+        };
         if current.orders.len() < limits::DEBUG_ORDERS && current.child.send(message) {
             current.orders.push_back(asked);
         } else {

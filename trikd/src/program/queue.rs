@@ -6,6 +6,7 @@ use crate::clients::debugging::OrderId;
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
+use lang_text::problem::Locale;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -14,19 +15,22 @@ use std::path::PathBuf;
 use std::time::Instant;
 use tokio::sync::{Notify, oneshot};
 
+/// The language in which somebody wants to hear of what is asked for; none: that of the robot.
+pub type Heard = Option<Locale>;
+
 /// What can be asked for.
 #[derive(Debug)]
 pub enum Command {
     /// End what runs and run this file.
-    Run(PathBuf),
+    Run(PathBuf, Heard),
     /// End what runs and run this text in JavaScript.
     Script(String),
     /// Evaluate this text after the ones before it.
     Direct(String),
     /// Replace the diagram that runs by this file, for the client of this number.
-    Patch(u32, WhenGone, PathBuf),
+    Patch(u32, WhenGone, PathBuf, Heard),
     /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`, for the client of this number.
-    Set(u32, String),
+    Set(u32, String, Heard),
     /// What a person says to the question with this number; none: nobody answers.
     Reply(u32, Option<String>),
     /// Something that a client wants who debugs; each has an answer.
@@ -181,7 +185,7 @@ fn outlives_stop(command: &mut Command) -> bool {
             true
         }
         Command::Quit(_) | Command::Ask(_) => true,
-        Command::Run(_)
+        Command::Run(..)
         | Command::Script(_)
         | Command::Direct(_)
         | Command::Patch(..)
@@ -214,9 +218,13 @@ mod tests {
             .build()
             .unwrap();
         runtime.block_on(async {
-            programs.send(Command::Run("a".into())).await;
+            programs.send(Command::Run("a".into(), None)).await;
             programs.send(Command::Direct("b".to_owned())).await;
-            let asked = OrderId { client: 1, tag: 2 };
+            let asked = OrderId {
+                client: 1,
+                tag: 2,
+                locale: None,
+            };
             let debug = Command::Debug(asked, Wish::Run("d".into()));
             programs.send(debug).await;
             programs.send(Command::Stop("somebody")).await;
@@ -225,7 +233,7 @@ mod tests {
         assert_eq!(
             waiting(&programs),
             [
-                "Debug(OrderId { client: 1, tag: 2 }, Overtaken)",
+                "Debug(OrderId { client: 1, tag: 2, locale: None }, Overtaken)",
                 "Stop(\"somebody\")",
                 "Script(\"c\")"
             ]

@@ -2,6 +2,7 @@
 
 use super::program::WhenGone;
 use lang_text::near::nearest;
+use lang_text::problem::Locale;
 use std::fmt;
 
 /// What a client asks for. Prefixes are case sensitive, and the first that fits counts.
@@ -46,6 +47,8 @@ pub enum Request<'a> {
         /// The order.
         order: &'a [u8],
     },
+    /// The language of what is said about programs that this client runs, and about its changes and orders.
+    Language(Locale),
     /// Whether this client answers questions of a diagram to a person.
     Questions(bool),
     /// What a person says to a question, by its number; none: nobody answers.
@@ -150,6 +153,11 @@ impl<'a> Request<'a> {
                 true => Self::strange(frame),
                 false => Self::Set(text),
             };
+        }
+        if let Some(name) = frame.strip_prefix(b"language:") {
+            let name = std::str::from_utf8(name).ok();
+            let named = name.and_then(Locale::named);
+            return named.map_or_else(|| Self::strange(frame), Self::Language);
         }
         if let Some(rest) = frame.strip_prefix(b"debug:") {
             return Self::debug(rest);
@@ -315,6 +323,11 @@ mod tests {
         assert_eq!(Request::parse(b"answer:3:a:b"), answer(3, Some(b"a:b")));
         assert_eq!(Request::parse(b"answer:3"), answer(3, None));
         assert_eq!(Request::parse(b"questions"), Request::Questions(true));
+        for locale in Locale::ALL {
+            let frame = format!("language:{}", locale.name());
+            assert_eq!(Request::parse(frame.as_bytes()), Request::Language(locale));
+        }
+        assert_eq!(Request::parse(b"language:ru_RU"), Request::Unknown);
         for (frame, tag, order) in [
             (
                 &b"debug:7 break {b}\nif n > 3"[..],

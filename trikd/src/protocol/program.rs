@@ -9,6 +9,8 @@ pub mod mailbox;
 
 pub use lang_diagram::machine::patch::WhenGone;
 
+use lang_text::problem::Locale;
+
 /// Something that the daemon sends to a program.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum ToProgram<'a> {
@@ -37,11 +39,18 @@ pub enum ToProgram<'a> {
     Patch {
         /// What becomes of threads at blocks that it does not have.
         when_gone: WhenGone,
+        /// The language of the answer.
+        locale: Locale,
         /// Its absolute path.
         path: &'a str,
     },
-    /// An assignment by a person, `NAME=EXPRESSION`.
-    Set(&'a str),
+    /// An assignment by a person.
+    Set {
+        /// The language of the answer.
+        locale: Locale,
+        /// `NAME=EXPRESSION`.
+        text: &'a str,
+    },
     /// Begin with the diagram in this file, with a debugger attached and stopped before its first block; its absolute path.
     Debugged(&'a str),
     /// Begin with the Python program in this file under debugpy, which connects to this address.
@@ -59,6 +68,8 @@ pub enum ToProgram<'a> {
         client: u32,
         /// What the client calls it.
         tag: u32,
+        /// The language of the answer.
+        locale: Locale,
         /// The order.
         order: &'a str,
     },
@@ -175,15 +186,24 @@ impl<'a> ToProgram<'a> {
             Self::Answer(text) => format!("answer:{text}"),
             Self::Web => "web:".to_owned(),
             Self::Watch(is_wanted) => format!("watch:{}", u8::from(is_wanted)),
-            Self::Patch { when_gone, path } => format!("patch:{}:{path}", when_gone.word()),
-            Self::Set(text) => format!("set:{text}"),
+            Self::Patch {
+                when_gone,
+                locale,
+                path,
+            } => format!("patch:{}:{}:{path}", when_gone.word(), locale.name()),
+            Self::Set { locale, text } => format!("set:{}:{text}", locale.name()),
             Self::Debugged(path) => format!("debug-file:{path}"),
             Self::Debugpy {
                 address,
                 secret,
                 path,
             } => format!("debugpy:{address} {} {path}", secret.unwrap_or(NO_SECRET)),
-            Self::Debug { client, tag, order } => format!("debug:{client} {tag} {order}"),
+            Self::Debug {
+                client,
+                tag,
+                locale,
+                order,
+            } => format!("debug:{client} {tag} {} {order}", locale.name()),
             Self::DebugLeft => "debug-left:".to_owned(),
             Self::Reply { number, text } => match text {
                 Some(text) => format!("reply:{number} {text}"),
@@ -212,13 +232,21 @@ impl<'a> ToProgram<'a> {
             "web" => Self::Web,
             "watch" => Self::Watch(rest == "1"),
             "patch" => {
-                let (word, path) = rest.split_once(':')?;
+                let (word, rest) = rest.split_once(':')?;
+                let (name, path) = rest.split_once(':')?;
                 Self::Patch {
                     when_gone: WhenGone::of(word)?,
+                    locale: Locale::named(name)?,
                     path,
                 }
             }
-            "set" => Self::Set(rest),
+            "set" => {
+                let (name, text) = rest.split_once(':')?;
+                Self::Set {
+                    locale: Locale::named(name)?,
+                    text,
+                }
+            }
             "debug-file" => Self::Debugged(rest),
             "debugpy" => {
                 let (address, rest) = rest.split_once(' ')?;
@@ -231,10 +259,12 @@ impl<'a> ToProgram<'a> {
             }
             "debug" => {
                 let (client, rest) = rest.split_once(' ')?;
-                let (tag, order) = rest.split_once(' ')?;
+                let (tag, rest) = rest.split_once(' ')?;
+                let (name, order) = rest.split_once(' ')?;
                 Self::Debug {
                     client: client.parse().ok()?,
                     tag: tag.parse().ok()?,
+                    locale: Locale::named(name)?,
                     order,
                 }
             }
@@ -355,10 +385,10 @@ mod tests {
                 ToProgram::Answer(text),
                 ToProgram::Web,
                 ToProgram::Watch(is_wanted),
-                ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
-                ToProgram::Set(text),
+                ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], locale: Locale::ALL[usize::from(is_wanted)], path: text },
+                ToProgram::Set { locale: Locale::ALL[usize::from(is_wanted)], text },
                 ToProgram::Debugged(text),
-                ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
+                ToProgram::Debug { client, tag: client.wrapping_add(1), locale: Locale::Russian, order: text },
                 ToProgram::DebugLeft,
                 ToProgram::Reply { number: client, text: is_wanted.then_some(text) },
             ] {

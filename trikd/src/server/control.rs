@@ -11,7 +11,7 @@ use crate::clients::{Client, Clients, Watching};
 use crate::connection::{self, Handler, Held, VERSION};
 use crate::feedback::{Feedback, Moment};
 use crate::outbox::Outbox;
-use crate::program::{Command, Programs};
+use crate::program::{Command, Heard, Programs};
 use crate::protocol::control::Request;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
@@ -53,6 +53,8 @@ struct Session {
     control: Rc<Control>,
     client: Rc<Client>,
     sending: Sending,
+    /// The language that it has asked for.
+    heard: Heard,
     /// Why it has no place: then it may only stop.
     full: Option<Full>,
 }
@@ -74,6 +76,12 @@ impl Session {
 
     fn error(&self, text: &str) {
         self.client.outbox.send(format!("error: {text}").as_bytes());
+    }
+
+    /// Why a program is not kept or not run, in the language that was asked for.
+    fn refuse(&self, why: &scripts::Refusal) {
+        let words = why.words();
+        self.error(words.in_locale(self.heard.unwrap_or_default()));
     }
 
     /// Whether this computer may do more than look.
@@ -115,11 +123,11 @@ impl Session {
 
     async fn run(&self, name: &[u8]) {
         match scripts::find(&self.control.scripts, name) {
-            Ok(path) => self.command(Command::Run(path)).await,
+            Ok(path) => self.command(Command::Run(path, self.heard)).await,
             Err(why) => {
                 // What runs ends all the same: the person wants to see something else.
                 self.command(Command::Stop("a client")).await;
-                self.error(&why.to_string());
+                self.refuse(&why);
             }
         }
     }
@@ -130,10 +138,11 @@ impl Session {
         }
         match scripts::find(&self.control.scripts, name) {
             Ok(path) => {
-                self.command(Command::Patch(self.client.id(), when_gone, path))
+                let asker = self.client.id();
+                self.command(Command::Patch(asker, when_gone, path, self.heard))
                     .await
             }
-            Err(why) => self.error(&why.to_string()),
+            Err(why) => self.refuse(&why),
         }
     }
 
@@ -170,7 +179,7 @@ impl Session {
             }
             Ok(Err(why)) => {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
-                self.error(&why.to_string());
+                self.refuse(&why);
             }
             Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
@@ -225,9 +234,11 @@ impl Handler for Session {
             Request::Set(assignment) => {
                 if self.may_control() {
                     let asker = self.client.id();
-                    self.command(Command::Set(asker, text(assignment))).await;
+                    self.command(Command::Set(asker, text(assignment), self.heard))
+                        .await;
                 }
             }
+            Request::Language(locale) => self.heard = Some(locale),
             Request::Questions(is_wanted) => {
                 // An answer changes what a program does.
                 if self.may_control() {
@@ -280,6 +291,7 @@ pub async fn serve(control: Rc<Control>, mut guest: Guest) {
         control: control.clone(),
         sending: Sending::new(control.recordings.clone(), client.clone()),
         client,
+        heard: None,
         full,
     };
     let frame_bytes = match full {

@@ -257,6 +257,44 @@ fn errors_name_the_block_and_stay_with_the_diagram() {
 }
 
 #[test]
+fn who_asks_for_a_language_hears_it_and_others_hear_that_of_the_robot() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let wrong = sketch.block("Function", &[("Body", "x = 1 / 0")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, wrong, end]);
+    let robot = robot(&["--language", "en"]);
+    let mut client = robot.client("control");
+    upload(&mut client, "wrong.qrs", &sketch.qrs().unwrap());
+    upload(&mut client, "count.qrs", &counting());
+    let is_russian = |text: &str| text.chars().any(|c| ('\u{430}'..='\u{44f}').contains(&c));
+    for (asks, is_wanted) in [("", false), ("language:ru", true), ("language:en", false)] {
+        client.send(asks);
+        let mut hear = |request: &str, answer: &str| {
+            client.send(request);
+            client.until(answer)
+        };
+        let mut told = vec![
+            hear("run:wrong.qrs", "error: main: "),
+            hear("run:none.py", "error: "),
+        ];
+        hear("run:count.qrs", "info: count.qrs has started");
+        told.extend([
+            hear("set:n=", "error: n is not changed: "),
+            hear("debug:1 step", "debug: {\"why\":"),
+            hear("debug:2 break", "debug: {\"why\":"),
+        ]);
+        for told in told {
+            assert_eq!(is_russian(&told), is_wanted, "{asks}: {told}");
+        }
+        client.send("debug:3 leave");
+        client.until("debug: {\"to\":3");
+        client.send("stop");
+        client.until("info: count.qrs was stopped");
+    }
+}
+
+#[test]
 fn each_mistake_of_a_diagram_is_told_once_with_its_block_and_place() {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);

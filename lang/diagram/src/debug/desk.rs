@@ -74,7 +74,7 @@ impl Refused {
     /// For a person.
     pub fn in_locale(&self, locale: Locale) -> String {
         let words = match self {
-            Self::Order(why) => return why.to_string(),
+            Self::Order(why) => why.words(),
             Self::Breakpoint(why) => return why.in_locale(locale),
             Self::Back(why) => return why.in_locale(locale),
             Self::NotNow(why) => return why.in_locale(locale),
@@ -102,6 +102,11 @@ impl Desk {
             motors_rest: true,
             told: Announcement::Detached,
         }
+    }
+
+    /// Speaks this language from now on; the one before.
+    pub fn speak(&mut self, locale: Locale) -> Locale {
+        std::mem::replace(&mut self.locale, locale)
     }
 
     /// The program.

@@ -5,8 +5,9 @@
 
 use std::fmt;
 
-use super::{Back, Breakpoint, Spot, Step};
+use super::{Back, Breakpoint, Spot, Step, words};
 use crate::limits;
+use lang_text::problem::Words;
 
 /// Something that is asked of a debugger.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -56,36 +57,55 @@ pub enum Order {
 pub enum NoOrder {
     /// No order begins with this word.
     Unknown(Box<str>),
-    /// The order lacks something, which is described.
-    Lacks(&'static str),
+    /// The order lacks something.
+    Lacks(Wanted),
     /// This word cannot be there.
     Strange(Box<str>),
     /// It is longer than an order may be.
     TooLong,
 }
 
+/// What an order may lack.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Wanted {
+    /// The id of a block.
+    Block,
+    /// The name of a variable.
+    Variable,
+    /// The name of a thread.
+    Thread,
+    /// The number of a breakpoint.
+    Number,
+    /// How many hits a breakpoint lets pass.
+    Hits,
+    /// What a breakpoint stops on.
+    Condition,
+    /// What a breakpoint says.
+    Line,
+    /// A time of the program.
+    Time,
+    /// A variable and its value.
+    Assignment,
+    /// An expression.
+    Expression,
+}
+
+impl NoOrder {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        words::no_order(self)
+    }
+}
+
 impl fmt::Display for NoOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(word) => write!(f, "'{word}' is no order; orders are {WORDS}"),
-            Self::Lacks(what) => write!(f, "this order needs {what}"),
-            Self::Strange(word) => write!(f, "'{word}' cannot be in this order"),
-            Self::TooLong => write!(f, "an order has at most {} bytes", limits::ORDER_BYTES_MAX),
-        }
+        f.write_str(&self.words().english)
     }
 }
 
 /// All words with which orders begin.
 pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, watch, \
     clear, enable, disable, breakpoints, errors, motors, set, evaluate";
-
-const A_BLOCK: &str = "the id of a block";
-const A_VARIABLE: &str = "the name of a variable";
-const A_THREAD: &str = "the name of a thread";
-const A_NUMBER: &str = "the number of a breakpoint";
-const A_HIT: &str = "a number of hits from 1 on after `from`, such as from 5";
-const A_CONDITION: &str = "a condition after `if`, such as if n > 3";
-const A_LINE: &str = "a text after `log`, such as log n is {n}";
 
 impl Order {
     /// What a text asks for.
@@ -112,12 +132,16 @@ impl Order {
             "breakpoints" if rest.is_empty() => Self::Breakpoints(0),
             "breakpoints" => return breakpoints(rest),
             "step" => return step(rest),
-            "until" => return Ok(Self::Until(some(rest, A_BLOCK)?)),
+            "until" => return Ok(Self::Until(some(rest, Wanted::Block)?)),
             "back" => return back(rest).map(Self::Back),
-            "hold" => return Ok(Self::Hold(some(rest, A_THREAD)?)),
-            "release" => return Ok(Self::Release(some(rest, A_THREAD)?)),
-            "break" => return breakpoint((rest, A_BLOCK), more, Spot::Block).map(Self::Break),
-            "watch" => return breakpoint((rest, A_VARIABLE), more, Spot::Change).map(Self::Break),
+            "hold" => return Ok(Self::Hold(some(rest, Wanted::Thread)?)),
+            "release" => return Ok(Self::Release(some(rest, Wanted::Thread)?)),
+            "break" => {
+                return breakpoint((rest, Wanted::Block), more, Spot::Block).map(Self::Break);
+            }
+            "watch" => {
+                return breakpoint((rest, Wanted::Variable), more, Spot::Change).map(Self::Break);
+            }
             "clear" if rest == "all" => return Ok(Self::Clear(None)),
             "clear" => return number(rest).map(|number| Self::Clear(Some(number))),
             "enable" => return number(rest).map(|number| Self::Enable(number, true)),
@@ -125,11 +149,11 @@ impl Order {
             "errors" => return either(rest, ["stop", "go"]).map(Self::Errors),
             "motors" => return either(rest, ["rest", "keep"]).map(Self::Motors),
             "set" => {
-                let lacks = NoOrder::Lacks("NAME=EXPRESSION");
+                let lacks = NoOrder::Lacks(Wanted::Assignment);
                 let (name, text) = rest.split_once('=').ok_or(lacks)?;
                 return Ok(Self::Set(name.trim().into(), text.trim().into()));
             }
-            "evaluate" => return Ok(Self::Evaluate(some(rest, "an expression")?)),
+            "evaluate" => return Ok(Self::Evaluate(some(rest, Wanted::Expression)?)),
             _ => return Err(NoOrder::Unknown(shortened(word))),
         };
         match rest {
@@ -264,7 +288,7 @@ pub(crate) fn shortened(text: &str) -> Box<str> {
     text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
 }
 
-fn some(text: &str, what: &'static str) -> Result<Box<str>, NoOrder> {
+fn some(text: &str, what: Wanted) -> Result<Box<str>, NoOrder> {
     match text {
         "" => Err(NoOrder::Lacks(what)),
         text => Ok(text.into()),
@@ -272,7 +296,7 @@ fn some(text: &str, what: &'static str) -> Result<Box<str>, NoOrder> {
 }
 
 fn number(text: &str) -> Result<u32, NoOrder> {
-    text.parse().map_err(|_| NoOrder::Lacks(A_NUMBER))
+    text.parse().map_err(|_| NoOrder::Lacks(Wanted::Number))
 }
 
 fn either(text: &str, words: [&'static str; 2]) -> Result<bool, NoOrder> {
@@ -298,9 +322,7 @@ fn step(rest: &str) -> Result<Order, NoOrder> {
 fn back(rest: &str) -> Result<Back, NoOrder> {
     if let Some(ms) = rest.strip_prefix("to ") {
         let ms = ms.trim().parse();
-        return ms
-            .map(Back::To)
-            .map_err(|_| NoOrder::Lacks("a time in milliseconds"));
+        return ms.map(Back::To).map_err(|_| NoOrder::Lacks(Wanted::Time));
     }
     match rest {
         "" => Ok(Back::Step(Step::Over)),
@@ -321,7 +343,7 @@ fn breakpoints(rest: &str) -> Result<Order, NoOrder> {
 }
 
 fn breakpoint(
-    (rest, what): (&str, &'static str),
+    (rest, what): (&str, Wanted),
     more: &str,
     spot: impl FnOnce(Box<str>) -> Spot,
 ) -> Result<Breakpoint, NoOrder> {
@@ -335,7 +357,7 @@ fn breakpoint(
             "from" => {
                 let hits = words.next().and_then(|word| word.parse().ok());
                 let hits = hits.filter(|hits| *hits > 0);
-                point.from_hit = hits.ok_or(NoOrder::Lacks(A_HIT))?;
+                point.from_hit = hits.ok_or(NoOrder::Lacks(Wanted::Hits))?;
             }
             "once" => point.is_once = true,
             "disabled" => point.is_disabled = true,
@@ -345,8 +367,8 @@ fn breakpoint(
     for line in more.lines() {
         let (word, text) = line.split_once(' ').unwrap_or((line, ""));
         let (part, what) = match word {
-            "if" => (&mut point.condition, A_CONDITION),
-            "log" => (&mut point.log, A_LINE),
+            "if" => (&mut point.condition, Wanted::Condition),
+            "log" => (&mut point.log, Wanted::Line),
             _ => return Err(NoOrder::Strange(shortened(line))),
         };
         // Of two lines one would be forgotten.

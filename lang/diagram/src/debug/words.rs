@@ -2,7 +2,61 @@
 //!
 //! Owns the words. What is wrong with an expression is said by the language of expressions.
 
+use super::order::{NoOrder, WORDS, Wanted};
+use crate::limits;
 use lang_text::problem::Words;
+
+/// Why a text is no order.
+pub(super) fn no_order(why: &NoOrder) -> Words {
+    match why {
+        NoOrder::Unknown(word) => Words::new(
+            format!("'{word}' is no order; orders are {WORDS}"),
+            format!("'{word}' - не распоряжение; распоряжения: {WORDS}"),
+        ),
+        NoOrder::Lacks(what) => {
+            let [english, russian] = wanted(*what);
+            Words::new(
+                format!("this order needs {english}"),
+                format!("в этом распоряжении нужно указать {russian}"),
+            )
+        }
+        NoOrder::Strange(word) => Words::new(
+            format!("'{word}' cannot be in this order"),
+            format!("в этом распоряжении не может быть '{word}'"),
+        ),
+        NoOrder::TooLong => {
+            let most = limits::ORDER_BYTES_MAX;
+            Words::new(
+                format!("an order has at most {most} bytes"),
+                format!("в распоряжении не больше {most} байт"),
+            )
+        }
+    }
+}
+
+fn wanted(what: Wanted) -> [&'static str; 2] {
+    match what {
+        Wanted::Block => ["the id of a block", "id блока"],
+        Wanted::Variable => ["the name of a variable", "имя переменной"],
+        Wanted::Thread => ["the name of a thread", "имя потока"],
+        Wanted::Number => ["the number of a breakpoint", "номер точки останова"],
+        Wanted::Hits => [
+            "a number of hits from 1 on after `from`, such as from 5",
+            "число срабатываний от 1 после `from`, например from 5",
+        ],
+        Wanted::Condition => [
+            "a condition after `if`, such as if n > 3",
+            "условие после `if`, например if n > 3",
+        ],
+        Wanted::Line => [
+            "a text after `log`, such as log n is {n}",
+            "текст после `log`, например log n = {n}",
+        ],
+        Wanted::Time => ["a time in milliseconds", "время в миллисекундах"],
+        Wanted::Assignment => ["NAME=EXPRESSION", "ИМЯ=ВЫРАЖЕНИЕ"],
+        Wanted::Expression => ["an expression", "выражение"],
+    }
+}
 
 pub(super) fn no_such_block() -> Words {
     Words::new(
@@ -82,7 +136,8 @@ pub(super) fn past() -> Words {
     )
 }
 
-pub(super) fn not_attached() -> Words {
+/// What an order answers that needs the debugger.
+pub fn not_attached() -> Words {
     Words::new("attach the debugger first", "сначала подключите отладчик")
 }
 

@@ -227,32 +227,6 @@ export const ru: Words = {
     ['a finite number', 'конечное число'],
     ['params/{name} stays as it is: {why}', 'params/{name} остаётся прежним: {why}'],
 
-    // The world around a virtual robot.
-    ['that place is beyond the walls of the room', 'это место за стенами комнаты'],
-    ['there is no thing number {number} in this world', 'в этом мире нет предмета номер {number}'],
-    [
-      'this robot is in a room of its own; only one of `trik up --field` takes other worlds',
-      'у этого робота своя комната; другие миры принимает только робот от `trik up --field`',
-    ],
-    [
-      'the project of this world locks it: its walls and things stay',
-      'проект этого мира закрыл его: стены и предметы остаются на местах',
-    ],
-    ['the project of this world locks the place of the robot', 'проект этого мира закрыл место робота'],
-    ['speed takes {least} to {most}, not {word}', 'скорость бывает от {least} до {most}, а не {word}'],
-    ['no world can be read from this file: {why}', 'в этом файле не читается мир: {why}'],
-    [
-      'there is no world in this project; give a world model, FILE.xml',
-      'в этом проекте нет мира; дайте модель мира, FILE.xml',
-    ],
-    [
-      'this robot has no world around it that takes orders: choose another robot',
-      'вокруг этого робота нет мира, которым можно распоряжаться: выберите другого робота',
-    ],
-    ['what was recorded takes no orders', 'тем, что записано, нельзя распоряжаться'],
-    ["'{kind}' needs a number from 0 to {most}", "для '{kind}' нужно число от 0 до {most}"],
-    ['{kind} {word} is not between 0 and {most}', '{kind} {word} — не между 0 и {most}'],
-    ["'{word}' is no number", "'{word}' — не число"],
     // A line of the log of the tree.
     ['[{time}] {node}: {why}', '[{time}] {node}: {why}'],
   ],

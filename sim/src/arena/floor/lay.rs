@@ -89,7 +89,7 @@ impl Layer {
         match Picture::read(&blob.path, &blob.text) {
             Ok(picture) => {
                 for lack in &picture.lacks {
-                    self.warn(&image.id, words::lacks(lack));
+                    self.warn(&image.id, words::lacks(*lack));
                 }
                 // The original draws it into a rectangle of whole pixels.
                 let far = point(image.at.x + image.size.x, image.at.y + image.size.y);
@@ -98,10 +98,7 @@ impl Layer {
                 let place = [right - left, 0.0, 0.0, bottom - top, left, top];
                 self.floor.add_picture(&picture, &Affine(place));
             }
-            Err(why) => self.warn(
-                &image.id,
-                words::bad_picture(&image.image, &why.to_string()),
-            ),
+            Err(why) => self.warn(&image.id, words::bad_picture(&image.image, &why.words())),
         }
     }
 

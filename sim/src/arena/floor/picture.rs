@@ -4,6 +4,9 @@
 //! does not show of it (clips, masks, filters) is not shown here. PNG and JPEG stay pixels. No other file is opened,
 //! whatever a picture names. Knows neither the field nor where a picture lies on it.
 
+mod words;
+
+use lang_text::problem::Words;
 use screen::{Fault, Pixels};
 use std::fmt;
 use usvg::tiny_skia_path as skia;
@@ -64,7 +67,27 @@ impl fmt::Display for Refusal {
     }
 }
 
+impl Refusal {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        Words::new(self.to_string(), words::russian(self))
+    }
+}
+
 impl std::error::Error for Refusal {}
+
+/// Something in a picture that sensors see otherwise, or not at all.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub enum Lack {
+    /// A text.
+    Text,
+    /// A picture inside that is damaged.
+    Damaged,
+    /// A picture inside that is neither PNG nor JPEG.
+    Other,
+    /// A pattern.
+    Pattern,
+}
 
 /// A picture, from (0, 0) to (1, 1).
 #[derive(Clone, Debug, Default)]
@@ -72,7 +95,7 @@ pub struct Picture {
     /// From the bottom up.
     pub layers: Vec<Layer>,
     /// What is in the file and cannot be shown.
-    pub lacks: Vec<&'static str>,
+    pub lacks: Vec<Lack>,
 }
 
 /// What an area is painted with.
@@ -184,7 +207,7 @@ impl Picture {
                 usvg::Node::Image(image) if image.is_visible() => {
                     self.add_image(image, square, opacity, depth);
                 }
-                usvg::Node::Text(_) => self.lacks.push("text"),
+                usvg::Node::Text(_) => self.lacks.push(Lack::Text),
                 usvg::Node::Path(_) | usvg::Node::Image(_) => {}
             }
         }
@@ -222,13 +245,12 @@ impl Picture {
                         let size = [f64::from(width), 0.0, 0.0, f64::from(height), 0.0, 0.0];
                         self.add_pixels(pixels, &Affine(size).then(&place));
                     }
-                    Err(_) => self.lacks.push("a picture inside that is damaged"),
+                    Err(_) => self.lacks.push(Lack::Damaged),
                 }
             }
             usvg::ImageKind::SVG(tree) => self.add_group(tree.root(), &place, opacity, depth + 1),
             usvg::ImageKind::GIF(_) | usvg::ImageKind::WEBP(_) => {
-                self.lacks
-                    .push("a picture inside that is neither PNG nor JPEG");
+                self.lacks.push(Lack::Other);
             }
         }
     }
@@ -255,7 +277,7 @@ impl Picture {
                 gradient.map(|gradient| Paint::Shade(gradient.into()))
             }
             usvg::Paint::Pattern(_) => {
-                self.lacks.push("a pattern");
+                self.lacks.push(Lack::Pattern);
                 None
             }
         }

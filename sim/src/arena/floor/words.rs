@@ -1,5 +1,6 @@
 //! What can be wrong with pictures and colours on a floor, in words.
 
+use super::picture::Lack;
 use lang_text::problem::Words;
 
 pub(super) fn no_colour(text: &str) -> Words {
@@ -36,17 +37,29 @@ pub(super) fn outside(path: &str) -> Words {
     )
 }
 
-pub(super) fn bad_picture(id: &str, why: &str) -> Words {
+pub(super) fn bad_picture(id: &str, why: &Words) -> Words {
     Words::new(
-        format!("sensors do not see the picture {id}: {why}"),
-        format!("датчики не видят картинку {id}: {why}"),
+        format!("sensors do not see the picture {id}: {}", why.english),
+        format!("датчики не видят картинку {id}: {}", why.russian),
     )
 }
 
-pub(super) fn lacks(what: &str) -> Words {
+pub(super) fn lacks(what: Lack) -> Words {
+    let [english, russian] = match what {
+        Lack::Text => ["text", "текст"],
+        Lack::Damaged => [
+            "a picture inside that is damaged",
+            "повреждённая картинка внутри",
+        ],
+        Lack::Other => [
+            "a picture inside that is neither PNG nor JPEG",
+            "картинка внутри, которая не PNG и не JPEG",
+        ],
+        Lack::Pattern => ["a pattern", "узор"],
+    };
     Words::new(
-        format!("the picture has something that sensors see otherwise or not at all: {what}"),
-        format!("в картинке есть то, что датчики видят иначе или не видят совсем: {what}"),
+        format!("the picture has something that sensors see otherwise or not at all: {english}"),
+        format!("в картинке есть то, что датчики видят иначе или не видят совсем: {russian}"),
     )
 }
 

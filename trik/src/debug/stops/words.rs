@@ -183,6 +183,11 @@ pub(crate) fn last_of_help() -> Words {
     )
 }
 
+/// Before where and why.
+pub(crate) fn stopped() -> Words {
+    Words::new("stopped", "остановлена")
+}
+
 pub(crate) fn past() -> Words {
     Words::new("past, ", "прошлое, ")
 }

@@ -5,7 +5,8 @@
 //! the language of the robot already.
 
 use crate::limits;
-use lang_text::problem::{Locale, Words};
+use crate::remote::words as remote;
+use lang_text::problem::{Locale, Words, of_system};
 use trikd::protocol::news;
 
 /// A sentence of a robot for a person with this language.
@@ -52,7 +53,7 @@ fn whole(text: &str) -> Option<&'static str> {
         news::NOT_PAIRED => {
             "этот компьютер не сопряжён с роботом: нажмите на роботе Enter и попробуйте ещё раз в течение 30 с"
         }
-        _ => return None,
+        text => return remote::whole(text),
     })
 }
 
@@ -184,6 +185,7 @@ const TEMPLATES: [[&str; 2]; 36] = [
 fn partly(text: &str) -> Option<String> {
     let fits = TEMPLATES
         .iter()
+        .chain(&remote::TEMPLATES)
         .find_map(|[english, russian]| Some((fitting(text, english)?, russian)));
     if let Some((parts, russian)) = fits {
         return Some(filled(russian, &parts));
@@ -192,7 +194,9 @@ fn partly(text: &str) -> Option<String> {
         return Some(patched);
     }
     // Of whom it is, and what.
-    let (whose, what) = text.split_once(": ")?;
+    let Some((whose, what)) = text.split_once(": ") else {
+        return Some(of_system(text)).filter(|system| system != text);
+    };
     let russian = both(what).russian;
     (russian != what).then(|| format!("{whose}: {russian}"))
 }
@@ -236,9 +240,17 @@ fn patched(text: &str) -> Option<String> {
     };
     let kept = number(" blocks kept")?;
     let (new, gone) = (number(" new")?, number(" gone")?);
-    let ended = match number(" threads ended") {
-        Some(ended) => format!(", потоков завершено {ended}"),
+    let ended = match parts.next() {
         None => String::new(),
+        Some("1 token lost") => ", сигналов потеряно 1".to_owned(),
+        Some(rest) => {
+            let number = |suffix| rest.strip_suffix(suffix)?.parse::<u32>().ok();
+            match (number(" threads ended"), number(" tokens lost")) {
+                (Some(ended), _) => format!(", потоков завершено {ended}"),
+                (None, Some(lost)) => format!(", сигналов потеряно {lost}"),
+                (None, None) => return None,
+            }
+        }
     };
     Some(format!(
         "блоков осталось {kept}, новых {new}, удалено {gone}{ended}"
@@ -342,7 +354,7 @@ mod tests {
 
     #[test]
     fn templates_have_as_many_places_in_both_languages_and_fit_themselves() {
-        for [english, russian] in TEMPLATES {
+        for [english, russian] in TEMPLATES.iter().chain(&remote::TEMPLATES) {
             let count = |text: &str| text.matches("{}").count();
             assert_eq!(count(english), count(russian), "{english}");
             let text = english.replace("{}", "x");
@@ -367,6 +379,15 @@ mod tests {
                 "0 blocks kept, 3 new, 9 gone, 1 threads ended",
                 "блоков осталось 0, новых 3, удалено 9, потоков завершено 1",
             ),
+            (
+                "1 blocks kept, 0 new, 0 gone, 1 token lost",
+                "блоков осталось 1, новых 0, удалено 0, сигналов потеряно 1",
+            ),
+            (
+                "1 blocks kept, 0 new, 0 gone, 3 tokens lost",
+                "блоков осталось 1, новых 0, удалено 0, сигналов потеряно 3",
+            ),
+            ("a.js: Permission denied (os error 13)", "a.js: нет прав"),
             // A newer robot may say more.
             ("many blocks kept", "many blocks kept"),
             ("something else", "something else"),

@@ -97,6 +97,17 @@ fn commands_about_a_program_that_runs_speak_russian_to_who_wants_it() {
     eventually("a robot that drives", || {
         robot.robot.duty(3).is_ok_and(|duty| duty != 0)
     });
+    let status = said(&["status"]).stdout;
+    for line in status.lines() {
+        assert!(is_russian(line), "{status}");
+    }
+    assert!(status.contains("drive.qrs") && !status.contains("started"));
+    // The robot itself says why, in the language that was asked for.
+    let refused = said(&["set", "n=1 +"]).stderr;
+    assert!(
+        is_russian(&refused) && !refused.contains("Unexpected"),
+        "{refused}"
+    );
     let set = said(&["set", "n=1000"]);
     assert_eq!(set.code(), 0, "{}", set.stderr);
     assert!(

@@ -3,13 +3,12 @@
 //! Owns the form of both, which is that of diagrams as far as there is one. What cannot be done is refused in words.
 
 use super::motors::Resting;
-use super::{Debugger, Seen, Stop};
+use super::{Debugger, Seen, Stop, words};
 use crate::brick::Brick;
 use crate::limits;
-use crate::protocol::news;
 use lang_diagram::debug::order::{NoOrder, Order};
 use lang_text::json::Object;
-use std::fmt;
+use lang_text::problem::Locale;
 use std::time::{Duration, Instant};
 
 /// Why an order is not carried out.
@@ -23,13 +22,15 @@ enum Refused {
     Never,
 }
 
-impl fmt::Display for Refused {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoOrder(why) => write!(out, "{why}"),
-            Self::NotAttached => out.write_str("attach the debugger first"),
-            Self::Never => out.write_str(news::NOT_IN_JAVASCRIPT),
-        }
+impl Refused {
+    /// For a person.
+    fn in_locale(&self, locale: Locale) -> String {
+        let words = match self {
+            Self::NoOrder(why) => why.words(),
+            Self::NotAttached => lang_diagram::debug::not_attached(),
+            Self::Never => words::never(),
+        };
+        words.in_locale(locale).to_owned()
     }
 }
 
@@ -67,14 +68,19 @@ impl Orders {
         }
     }
 
-    /// Carries an order out; the answer.
-    pub fn order(&mut self, debugger: &Debugger, tag: u32, text: &str) -> String {
+    /// Carries an order out, with what its client calls it; the answer, in this language.
+    pub fn order(
+        &mut self,
+        debugger: &Debugger,
+        (tag, text): (u32, &str),
+        locale: Locale,
+    ) -> String {
         let done = Order::parse(text).map_err(Refused::NoOrder);
         let done = done.and_then(|order| self.carry_out(debugger, &order));
         let told = object();
         let told = match &done {
             Ok(()) => told.plain("program", self.state(debugger)),
-            Err(why) => told.text("why", &why.to_string()),
+            Err(why) => told.text("why", &why.in_locale(locale)),
         };
         told.plain("to", tag).plain("done", done.is_ok()).done()
     }
@@ -266,14 +272,14 @@ mod tests {
             assert_eq!(orders.warning().is_some(), is_first, "told once");
         }
         // If motors are to be kept, those that turn are not reported.
-        orders.order(&debugger, 1, "motors keep");
+        orders.order(&debugger, (1, "motors keep"), Locale::English);
         assert_eq!(orders.news(&debugger).1, None);
-        orders.order(&debugger, 2, "motors rest");
+        orders.order(&debugger, (2, "motors rest"), Locale::English);
         assert!(orders.news(&debugger).1.is_some());
         robot.fails.set(false);
         assert_eq!(orders.news(&debugger).1, None);
         assert_eq!(robot.value("motors/M3/value"), "0");
-        orders.order(&debugger, 3, "continue");
+        orders.order(&debugger, (3, "continue"), Locale::English);
         assert_eq!(robot.value("motors/M3/value"), "40");
     }
 }

@@ -11,6 +11,7 @@ use crate::program::{Command, Meeting, Wish};
 use crate::protocol::news;
 use crate::{limits, log, scripts};
 use lang_diagram::debug::order::{NoOrder, Order};
+use lang_text::problem::Locale;
 use std::fmt;
 use std::net::SocketAddr;
 
@@ -73,6 +74,22 @@ impl fmt::Display for Refusal {
     }
 }
 
+impl Refusal {
+    /// For a client. What clients know by its words stays as it is in all languages.
+    fn in_locale(&self, locale: Locale) -> String {
+        match self {
+            Self::Order(why) => why.words().in_locale(locale).to_owned(),
+            Self::Program(why) => why.words().in_locale(locale).to_owned(),
+            Self::NotPaired
+            | Self::Taken(_)
+            | Self::NoDebugger
+            | Self::NoPython
+            | Self::NoPort
+            | Self::NoSecret => self.to_string(),
+        }
+    }
+}
+
 /// Whether a word is one that a program can say to its debugger.
 fn is_secret(word: &str) -> bool {
     (1..=limits::DEBUG_SECRET_BYTES).contains(&word.len())
@@ -93,6 +110,7 @@ impl Session {
         let asked = OrderId {
             client: self.client.id(),
             tag,
+            locale: self.heard,
         };
         let done = match (text.strip_prefix(RUN), text.strip_prefix(PYTHON)) {
             (Some(name), _) => self.run_debugged(asked, name).await,
@@ -103,7 +121,8 @@ impl Session {
             if why.blame() != Blame::Client {
                 log::report(&why);
             }
-            self.client.not_done(Some(tag), &why.to_string());
+            let locale = self.heard.unwrap_or_default();
+            self.client.not_done(Some(tag), &why.in_locale(locale));
         }
     }
 
