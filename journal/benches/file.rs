@@ -53,14 +53,9 @@ fn race<const N: usize>(mut ways: [&mut dyn FnMut(); N]) -> [f64; N] {
 }
 
 /// Bytes that nothing makes smaller, as those of a JPEG file.
-fn noise(bytes: usize, seed: u64) -> Vec<u8> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    let words = (0..bytes.div_ceil(8)).flat_map(|_| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        state.to_le_bytes()
-    });
+fn noise(bytes: usize, seed: u32) -> Vec<u8> {
+    let mut random = needs::Random::new(seed);
+    let words = (0..bytes.div_ceil(4)).flat_map(|_| random.bits().to_le_bytes());
     words.take(bytes).collect()
 }
 

@@ -33,7 +33,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
 
-pub use sheet::{Cell, Column, Mark, Row, Sheet, Tone};
+pub use sheet::{Cell, Column, Mark, MarkTable, Row, Tone};
 
 /// The path of the page, by which it knows that it is this one.
 const PATH: &str = "/marks";
@@ -58,11 +58,11 @@ pub struct MarksPage {
 }
 
 impl MarksPage {
-    /// Serves it from now on, with nothing judged. Whoever reaches the address may look, and nobody can do more.
+    /// Serves it from now on, with nothing judged. Anyone who reaches the address may look, and nobody can do more.
     ///
     /// # Errors
     /// Nobody can listen there, or there are no more threads.
-    pub fn start(address: SocketAddr, sheet: Sheet) -> Result<Self, Error> {
+    pub fn start(address: SocketAddr, sheet: MarkTable) -> Result<Self, Error> {
         let board = Arc::new(Board::new(sheet));
         let shown = board.clone();
         let guests: Arc<dyn Guests> = Arc::new(Everybody);

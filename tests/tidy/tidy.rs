@@ -242,7 +242,15 @@ fn sources_and_documents_are_ascii() {
     let programs = root().join("trikd/tests/js");
     found.retain(|path| !path.starts_with(&programs));
     // Messages for pupils, in Russian too.
-    let speaks_russian = ["lang", "page/src", "sim/src", "trik/src"].map(|part| root().join(part));
+    let speaks_russian = [
+        "lang",
+        "page/src",
+        "screen/src",
+        "sim/src",
+        "trik/src",
+        "trikd/src",
+    ]
+    .map(|part| root().join(part));
     // A row of a block or of a reading has its words in both languages.
     let blocks =
         ["lang/diagram/src/blocks", "lang/dataflow/src/blocks"].map(|part| root().join(part));
@@ -251,7 +259,7 @@ fn sources_and_documents_are_ascii() {
     let task = root().join("trik/src/task/README.ru.md");
     // What the pages say in Russian.
     let pages =
-        ["page/app/src/words/ru.ts", "page/app/src/class/ru.ts"].map(|part| root().join(part));
+        ["words", "class", "marks"].map(|part| root().join(format!("page/app/src/{part}/ru.ts")));
     // Pages that pupils and teachers read, in Russian.
     let documents = root().join("docs/ru");
     let is_words = |path: &Path| {

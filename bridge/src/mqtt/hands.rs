@@ -109,7 +109,7 @@ impl Hands {
     fn carry(&mut self, letter: &Letter) -> Result<(), Undone> {
         match &letter.order {
             Order::Stop => {
-                // Whoever drove begins anew.
+                // Those who drove begin anew.
                 self.leases.clear();
                 self.robot.stop().map_err(Undone::Robot)
             }

@@ -1,4 +1,4 @@
-//! The topics of one robot: `trik/CLASS/ROBOT/...`.
+//! The topics of one robot, below `trik`, its class and its name.
 //!
 //! Owns every name, and which texts can be part of one. `life` says whether the robot is there, `tel/NODE` is the newest of a
 //! node, commands come below `cmd/`, and `answer` says what became of them. Other bridges use the same words.

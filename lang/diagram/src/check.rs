@@ -7,8 +7,7 @@ use std::collections::{HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
 use super::lower::{Lowered, World, lower};
-use super::machine::wanted;
-use super::program::{ArgumentKind, AssignedKind, Leads, NOWHERE, Node, Program};
+use super::program::{ArgumentKind, AssignedKind, Leads, NOWHERE, Node, Program, wanted};
 use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};

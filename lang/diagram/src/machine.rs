@@ -32,7 +32,6 @@ use super::words;
 use agenda::Work;
 use clocks::Clock;
 use formulas::Formulas;
-pub(crate) use formulas::wanted;
 use guard::Held;
 use lang_expr::{Compat, Value};
 use lang_text::problem::{Place, Problem, Words};

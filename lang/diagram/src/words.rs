@@ -3,9 +3,14 @@
 //! Owns the words. Where the original program has a text, the English one is that text, and the Russian one too where it
 //! is known from recorded runs.
 
-use super::debug::order::shortened;
+use super::limits;
 use lang_text::near::did_you_mean;
 use lang_text::problem::Words;
+
+/// The beginning of a word that may be very long.
+pub(super) fn shortened(text: &str) -> Box<str> {
+    text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
+}
 
 pub(super) fn too_many_links() -> Words {
     Words::new("Too many outgoing links", "Слишком много исходящих связей")

@@ -174,7 +174,7 @@ impl Source {
     }
 
     /// Numbers of the last analysis that count as something else than they say, as errors: of a text that somebody has just
-    /// typed, which no program of long ago relies on.
+    /// typed, which no outdated program relies on.
     pub fn odd_numbers(&self) -> Vec<Problem> {
         let is_odd = |fault: &&Fault| matches!(fault.reason, Reason::OddNumber(..));
         let odd = self.faults.iter().filter(is_odd);

@@ -3,7 +3,7 @@
 //! Owns them, and who is told of a change. Only the newest of a row is ever shown, so a viewer that is slow misses what lay
 //! between and delays nobody.
 
-use super::sheet::{Column, Row, Sheet};
+use super::sheet::{Column, MarkTable, Row};
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
@@ -44,7 +44,7 @@ pub struct Board {
 
 impl Board {
     /// Before the first run.
-    pub fn new(sheet: Sheet) -> Self {
+    pub fn new(sheet: MarkTable) -> Self {
         let mut rows = sheet.rows;
         rows.resize_with(sheet.pupils.len(), Row::default);
         let progress = Progress {

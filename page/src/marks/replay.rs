@@ -13,8 +13,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// What a replay may do: run what is in it, and nothing else.
-const POLICY: &str = "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
-                      img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+const POLICY: &str = concat!(
+    "sandbox allow-scripts; default-src 'none'; script-src '",
+    "unsafe-inline'; style-src '",
+    "unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+);
 
 /// The page at a path.
 pub async fn answer(path: PathBuf) -> Response {

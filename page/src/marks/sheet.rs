@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// What is known before the first run.
 #[derive(Clone, Debug, Default)]
-pub struct Sheet {
+pub struct MarkTable {
     /// What is judged, as a title.
     pub name: String,
     /// The names of the rows.

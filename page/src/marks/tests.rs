@@ -10,7 +10,7 @@ use std::time::Duration;
 
 /// Two pupils, one task.
 fn page() -> MarksPage {
-    let sheet = Sheet {
+    let sheet = MarkTable {
         name: "class".to_owned(),
         pupils: vec!["anna".to_owned(), "<script>".to_owned()],
         columns: vec![Column {
@@ -20,7 +20,7 @@ fn page() -> MarksPage {
         runs: 2,
         rows: vec![waiting(), waiting()],
         left_out: (vec!["x.txt is left out".to_owned()], 3),
-        ..Sheet::default()
+        ..MarkTable::default()
     };
     MarksPage::start("127.0.0.1:0".parse().unwrap(), sheet).unwrap()
 }

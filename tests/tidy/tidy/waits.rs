@@ -58,7 +58,7 @@ const PAUSES: [(&str, usize, &str); 22] = [
 
 /// Scripts of tests in other languages that pause, how often, and why: those of the page in a browser, and of what is
 /// installed.
-const SCRIPTS: [(&str, usize, &str); 13] = [
+const SCRIPTS: [(&str, usize, &str); 15] = [
     ("cross/board/guest.sh", 1, "between two looks"),
     (
         "cross/install/controller/usr/lib/trikfs/common.sh",
@@ -83,6 +83,7 @@ const SCRIPTS: [(&str, usize, &str); 13] = [
     ),
     ("page/app/e2e/around.e2e.js", 1, "between two looks"),
     ("page/app/e2e/bench.js", 2, "measures for a time"),
+    ("page/app/e2e/figures.js", 2, "measures for a time"),
     (
         "page/app/e2e/instruments.e2e.js",
         5,
@@ -98,6 +99,11 @@ const SCRIPTS: [(&str, usize, &str); 13] = [
         "page/app/e2e/shots.js",
         4,
         "pictures of the last six seconds",
+    ),
+    (
+        "page/app/e2e/viewer.js",
+        1,
+        "one that reads nothing for a time",
     ),
     ("page/app/e2e/world.e2e.js", 2, "pictures that would come"),
 ];

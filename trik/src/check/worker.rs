@@ -33,7 +33,7 @@ pub(super) const ENDED: &str = "ended";
 /// The pipes, and what the system says of limits.
 pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
     set_pdeathsig(Signal::SIGKILL).map_err(|error| Error::system("worker", error))?;
-    // Whoever has started it may keep signals from its threads, and with them from this process.
+    // The program that has started it may keep signals from its threads, and with them from this process.
     crate::up::session::let_in().map_err(|error| Error::system("signals", error))?;
     // Programs that it starts have the same user, and look neither into its memory nor at its pipes.
     set_dumpable(false).map_err(|error| Error::system("worker", error))?;

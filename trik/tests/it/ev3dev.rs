@@ -291,7 +291,8 @@ fn a_timed_run_ends_by_itself_and_ramps_are_told() {
         &[("ramp_up_sp", 4000), ("ramp_down_sp", 4000)],
         "run-forever",
     );
-    assert_eq!(view.state(LEFT), "running ramping");
+    // Its next tick begins the ramp.
+    eventually("the ramp up", || view.state(LEFT) == "running ramping");
     eventually("the end of the ramp", || view.state(LEFT) == "running");
     view.write(&format!("{LEFT}/command"), "stop");
     // Its next tick begins the ramp.

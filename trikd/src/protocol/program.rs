@@ -429,8 +429,9 @@ mod tests {
     fn the_lists_of_words_are_whole() {
         for word in TO_PROGRAM {
             let second = match word {
-                "patch" => "end:x",
-                "debug" => "1 2 x",
+                "patch" => "end:en:x",
+                "set" => "en:x=1",
+                "debug" => "1 2 en x",
                 "reply" => "1 x",
                 "debugpy" => "1 - x",
                 _ => "1:x",

@@ -50,3 +50,42 @@ fn a_large_version_is_prepared_beside_the_program() {
     client.send("stop");
     client.until("info: count.qrs was stopped by a client");
 }
+
+/// A program that counts, beside blocks that make each version of it take a while.
+fn long_flow(step: u32) -> String {
+    let mut text = format!(
+        "diagram main\n  tick: Loop(start_border = 0, end_border = 100000, time = 10)\n  \
+         count: \"Text programming\"(IO0 = `n = I0 * {step}; print(\"n \" .. n); n`)\n  tick.OUT -> count.I0\n"
+    );
+    for at in 0..1000 {
+        text += &format!(
+            "  f{at}: \"Text programming\"(IO0 = `I0 + {at}`)\n  tick.CF_OUT -> f{at}.I0\n"
+        );
+    }
+    text
+}
+
+#[test]
+fn many_versions_at_once_do_not_hold_what_runs() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "long.flow", long_flow(0).as_bytes());
+    client.send("run:long.flow");
+    client.until("print: n 0");
+    const VERSIONS: u32 = 8;
+    for step in 1..=VERSIONS {
+        upload(&mut client, "long.flow", long_flow(step).as_bytes());
+        client.send("patch:end:long.flow");
+    }
+    let mut held = 0;
+    for _ in 1..VERSIONS {
+        client.until("info: long.flow is changed");
+        match client.next() {
+            Some(told) if told.starts_with("print: n ") => {}
+            Some(_) | None => held += 1,
+        }
+    }
+    // Several that take little time may come before one step.
+    assert!(held < VERSIONS - 1, "nothing came between the versions");
+    client.send("stop");
+}

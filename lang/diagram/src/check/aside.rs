@@ -4,8 +4,7 @@
 //! types that never fit, and what would change the run. Computes nothing.
 
 use super::{Flow, each_node, given, taught};
-use crate::machine::wanted;
-use crate::program::{Leads, Program};
+use crate::program::{Leads, Program, wanted};
 use crate::words;
 use lang_expr::reserved::SENSORS;
 use lang_expr::tree::{Node as Part, Tree};
@@ -123,15 +122,25 @@ pub(crate) fn no_assignment(known: &Known<'_>, name: &str) -> Option<Problem> {
 /// Whether a statement that gives a variable the answer of a person fights with what the program's texts do with it,
 /// whichever of them the program has come to.
 pub(crate) fn fights(known: &Known<'_>, variable: &str, statement: &str) -> bool {
-    let mut names = known.names.clone();
-    taught(known.program, &Flow::of(known.program), &mut names);
-    let is_good = |statement: &str| {
+    let flow = Flow::of(known.program);
+    // Texts that are wrong after this statement, and more than all if it is wrong itself.
+    let wrong = |statement: &str| {
+        let mut names = known.names.clone();
         let mut source = Source::new(statement, Wanted::Statements);
-        lang_expr::analyse(&mut source, &mut names.clone()).is_ok()
+        if lang_expr::analyse(&mut source, &mut names).is_err() {
+            return usize::MAX;
+        }
+        let (mut texts, _) = taught(known.program, &flow, &mut names);
+        let is_wrong = |text: &mut Source| lang_expr::analyse(text, &mut names.clone()).is_err();
+        texts
+            .values_mut()
+            .map(is_wrong)
+            .filter(|wrong| *wrong)
+            .count()
     };
     // Texts that fight among themselves leave no good answer, which is not the fault of this one.
-    let others = ["0", "''"].map(|text| format!("{variable} = {text}"));
-    !is_good(statement) && others.iter().any(|other| is_good(other))
+    let others = ["0", "''"].map(|text| wrong(&format!("{variable} = {text}")));
+    others.iter().any(|other| *other < wrong(statement))
 }
 
 /// What is wrong with a name as one of a variable or a sensor of the program.

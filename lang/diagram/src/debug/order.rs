@@ -7,6 +7,7 @@ use std::fmt;
 
 use super::{Back, Breakpoint, Spot, Step, words};
 use crate::limits;
+use crate::words::shortened;
 use lang_text::problem::Words;
 
 /// Something that is asked of a debugger.
@@ -281,11 +282,6 @@ impl Step {
     fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|step| step.word() == word)
     }
-}
-
-/// The beginning of a word that may be very long.
-pub(crate) fn shortened(text: &str) -> Box<str> {
-    text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
 }
 
 fn some(text: &str, what: Wanted) -> Result<Box<str>, NoOrder> {

@@ -2,8 +2,7 @@
 //!
 //! Owns the border to the language of expressions. Knows no blocks: a problem has no place but the one in its text.
 
-use crate::blocks::Type;
-use crate::program::{Program, Source as Index};
+use crate::program::{Program, Source as Index, wanted};
 use lang_expr::reserved::SENSORS;
 use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
 use lang_text::problem::Problem;
@@ -189,17 +188,5 @@ impl Formulas {
         self.names
             .variables()
             .filter_map(|(slot, name, _)| Some((name, self.store.get(slot)?)))
-    }
-}
-
-/// What an expression is asked for.
-pub(crate) fn wanted(of: Type) -> Wanted {
-    match of {
-        Type::Statements => Wanted::Statements,
-        Type::Truth => Wanted::Bool,
-        Type::Whole => Wanted::Int,
-        Type::Number => Wanted::Float,
-        Type::Text | Type::Printed => Wanted::Text,
-        Type::List => Wanted::List,
     }
 }

@@ -7,16 +7,16 @@ use crate::check::verdict::Verdict;
 use crate::check::words;
 use crate::terminal::harmless;
 use lang_text::problem::{Locale, Words};
-use page::marks::{Cell, Column, Mark, Row, Sheet, Tone};
+use page::marks::{Cell, Column, Mark, MarkTable, Row, Tone};
 
 impl Grades {
     /// The table before the first run.
-    pub fn sheet(&self, name: String, waiting: &[usize]) -> Sheet {
+    pub fn sheet(&self, name: String, waiting: &[usize]) -> MarkTable {
         let columns = self.columns.iter().map(|column| Column {
             name: harmless(&column.name()),
             weight: column.weight,
         });
-        Sheet {
+        MarkTable {
             name,
             pupils: self.pupils.iter().map(|name| harmless(name)).collect(),
             columns: columns.collect(),
