@@ -327,18 +327,16 @@ impl<W: Write + Seek> Target<W> {
         saved: &mut Saved,
         is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<bool, Stop> {
-        let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
         if !is_whole(opcode, data) {
-            let what = "a length inside a record".to_owned();
-            return Err(Stop::Damage(Error::Damaged(what)));
+            return Err(damaged("a length inside a record"));
         }
-        let record = mcap::parse_record(opcode, data).map_err(damage)?;
+        let record = mcap::parse_record(opcode, data);
+        let record = record.map_err(|error| Stop::Damage(Error::reading(error)))?;
         if let Record::Header(header) = &record {
             return self.begin(header).map(|()| true);
         }
-        let out = self.out.as_mut().filter(|_| self.is_begun);
-        let Some(out) = out else {
+        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
             return Err(Stop::Damage(Error::NotARecording));
         };
         match record {
@@ -357,18 +355,12 @@ impl<W: Write + Seek> Target<W> {
                 self.channels.insert(channel.id, (id, channel.topic));
             }
             Record::Message { header, data } => {
-                if !self.channels.contains_key(&header.channel_id) {
-                    let known = self.known.as_ref();
-                    let known = known.and_then(|known| known.channels.get(&header.channel_id));
-                    let Some(channel) = known else {
-                        // Others of its chunk may be known.
-                        saved.note(Error::Damaged("an unknown channel".to_owned()), 0);
-                        saved.left_out += 1;
-                        return Ok(true);
-                    };
-                    let id = declare_known(out, channel).map_err(disk)?;
-                    self.channels
-                        .insert(channel.id, (id, channel.topic.clone()));
+                let known = self.known.as_ref();
+                if !knows(out, &mut self.channels, known, header.channel_id).map_err(disk)? {
+                    // Others of its chunk may be known.
+                    saved.note(Error::Damaged("an unknown channel".to_owned()), 0);
+                    saved.left_out += 1;
+                    return Ok(true);
                 }
                 let (id, topic) = &self.channels[&header.channel_id];
                 if is_wanted(topic, &header, &data) {
@@ -434,6 +426,28 @@ fn declare_known<W: Write + Seek>(
     };
     let encoding = &channel.message_encoding;
     out.add_channel(schema, &channel.topic, encoding, &channel.metadata)
+}
+
+fn damaged(what: &str) -> Stop {
+    Stop::Damage(Error::Damaged(what.to_owned()))
+}
+
+/// Whether the new file has a channel, which it gets now if the old summary tells of it.
+fn knows<W: Write + Seek>(
+    out: &mut mcap::Writer<W>,
+    channels: &mut HashMap<u16, (u16, String)>,
+    known: Option<&Summary>,
+    id: u16,
+) -> mcap::McapResult<bool> {
+    if channels.contains_key(&id) {
+        return Ok(true);
+    }
+    let Some(channel) = known.and_then(|known| known.channels.get(&id)) else {
+        return Ok(false);
+    };
+    let new = declare_known(out, channel)?;
+    channels.insert(channel.id, (new, channel.topic.clone()));
+    Ok(true)
 }
 
 /// Writes a message, and hands all to the file if it is time.

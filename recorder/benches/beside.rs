@@ -186,18 +186,14 @@ fn main() {
         let all_s = WINDOW.as_secs_f64() * done.len() as f64;
         let sum = |of: fn(&Done) -> f64| done.iter().map(of).sum::<f64>();
         let lost: u64 = done.iter().map(|done| done.lost).sum();
-        println!(
-            "{} nodes, {:.0} events/s, {} lost, {}, {:.0} s in all",
-            done.iter().map(|done| done.nodes).max().unwrap_or(0),
-            sum(|done| done.events as f64) / all_s,
-            lost,
-            if is_standard {
-                "with messages of standard types"
-            } else {
-                "with those of nodes alone"
-            },
-            begin.elapsed().as_secs_f64()
-        );
+        let nodes = done.iter().map(|done| done.nodes).max().unwrap_or(0);
+        let events = sum(|done| done.events as f64) / all_s;
+        let what = match is_standard {
+            true => "with messages of standard types",
+            false => "with those of nodes alone",
+        };
+        let took_s = begin.elapsed().as_secs_f64();
+        println!("{nodes} nodes, {events:.0} events/s, {lost} lost, {what}, {took_s:.0} s in all");
         line(
             "  processor",
             sum(|done| done.cpu_s) / all_s * 100.0,

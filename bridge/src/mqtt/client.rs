@@ -366,10 +366,11 @@ impl Serving {
         {
             return Some(Gone::TakenOver(self.topics.client_id()));
         }
-        let code = match why {
-            ConnectionError::ConnectionRefused(code) => code,
-            ConnectionError::MqttState(StateError::ConnFail { reason }) => reason,
-            _ => return None,
+        // The enum has other variants with other features.
+        let (ConnectionError::ConnectionRefused(code)
+        | ConnectionError::MqttState(StateError::ConnFail { reason: code })) = why
+        else {
+            return None;
         };
         let is_final = matches!(
             code,
@@ -386,9 +387,12 @@ impl Serving {
 
 /// Why there is no connection, for a person.
 fn words(why: &ConnectionError) -> String {
-    match why {
-        ConnectionError::Io(why) => why.to_string(),
-        ConnectionError::Timeout(_) => "it does not answer".to_owned(),
-        other => other.to_string(),
+    // The enum has other variants with other features.
+    if let ConnectionError::Io(why) = why {
+        return why.to_string();
+    }
+    match matches!(why, ConnectionError::Timeout(_)) {
+        true => "it does not answer".to_owned(),
+        false => why.to_string(),
     }
 }

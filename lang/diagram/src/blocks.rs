@@ -25,6 +25,7 @@ use super::ports::Kit;
 pub use act::Act;
 pub use core::Does;
 use example::Example;
+use lang_expr::Wanted;
 use lang_text::problem::{Locale, Words};
 pub(crate) use parts::{EVALUATE, REDRAW};
 pub use wait::Wait;
@@ -152,6 +153,20 @@ pub enum Type {
     Printed,
     /// A list of texts.
     List,
+}
+
+impl Type {
+    /// What an expression is asked for.
+    pub(crate) fn wanted(self) -> Wanted {
+        match self {
+            Self::Statements => Wanted::Statements,
+            Self::Truth => Wanted::Bool,
+            Self::Whole => Wanted::Int,
+            Self::Number => Wanted::Float,
+            Self::Text | Self::Printed => Wanted::Text,
+            Self::List => Wanted::List,
+        }
+    }
 }
 
 /// What is copied into a variable.

@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
 use super::lower::{Lowered, World, lower};
-use super::program::{ArgumentKind, AssignedKind, Leads, NOWHERE, Node, Program, wanted};
+use super::program::{ArgumentKind, AssignedKind, Leads, NOWHERE, Node, Program};
 use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};
@@ -142,7 +142,7 @@ fn taught(
                 };
                 let source = texts
                     .entry(index)
-                    .or_insert_with(|| Source::new(&text.text, wanted(text.wanted)));
+                    .or_insert_with(|| Source::new(&text.text, text.wanted.wanted()));
                 let _ = lang_expr::analyse(source, names);
             }
         }

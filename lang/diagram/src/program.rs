@@ -10,7 +10,6 @@ use super::blocks::act::Effect;
 use super::blocks::wait::Measure;
 use super::blocks::{Act, Copied, Row, Type, Wait};
 use super::ports::{Kit, Port};
-use lang_expr::Wanted;
 use lang_text::problem::{Place, Problem};
 
 /// A place in [`Program::nodes`].
@@ -593,17 +592,5 @@ impl Program {
             block: self.row(node).map(|row| row.shown.to_owned()),
             ..Place::default()
         }
-    }
-}
-
-/// What an expression of this type is asked for.
-pub(crate) fn wanted(of: Type) -> Wanted {
-    match of {
-        Type::Statements => Wanted::Statements,
-        Type::Truth => Wanted::Bool,
-        Type::Whole => Wanted::Int,
-        Type::Number => Wanted::Float,
-        Type::Text | Type::Printed => Wanted::Text,
-        Type::List => Wanted::List,
     }
 }

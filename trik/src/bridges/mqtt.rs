@@ -17,7 +17,7 @@ use crate::up::session::signals;
 use ::bridge::follow::{Change, Follow};
 use ::bridge::foxglove::robot::{self, Robot};
 use ::bridge::mqtt::Message;
-use ::bridge::mqtt::client::{Client, News, Settings, Tls, Voice};
+use ::bridge::mqtt::client::{Client, Gone, News, Settings, Tls, Voice};
 use ::bridge::mqtt::discovery;
 use ::bridge::mqtt::hands::Hands;
 use ::bridge::mqtt::inbox::Inbox;
@@ -44,7 +44,7 @@ pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
     let settings = settings(args)?;
     // Threads inherit what is blocked.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
-    let mut follow = Follow::begin(&root, PROGRAM).map_err(refused)?;
+    let follow = Follow::begin(&root, PROGRAM).map_err(refused)?;
     let shown = root.display().to_string();
     let programs = args
         .programs
@@ -63,56 +63,23 @@ pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
         "{shown}: {} at {at}; Ctrl-C ends it\n",
         topics.life().trim_end_matches("/life")
     ))?;
-    let voice = client.voice();
-    let (mut entries, mut found, mut is_there) = (Vec::new(), Vec::new(), false);
+    let mut run = Run {
+        args,
+        at,
+        topics,
+        voice: client.voice(),
+        client,
+        follow,
+        values,
+        found: Vec::new(),
+        is_there: false,
+    };
     let over = loop {
-        entries.clear();
-        match follow.look(&mut entries) {
-            Change::Same => values.take(&entries),
-            Change::Gone => {
-                client.life(false);
-                say("the tree is gone; waiting for it\n")?;
-            }
-            Change::Back => {
-                values.take(&follow.beginning());
-                client.life(true);
-                say("the tree is there again\n")?;
-            }
+        run.look()?;
+        if let Some(gone) = run.hear()? {
+            break Some(gone);
         }
-        match client.news() {
-            None => {}
-            Some(News::Connected) => {
-                is_there = true;
-                say(&format!("{at}: connected\n"))?;
-                client.life(follow.is_there());
-                values.begin_anew();
-                found = discovered(args, &topics, &values);
-            }
-            Some(News::Lost(why)) => {
-                is_there = false;
-                let why = harmless(&why);
-                say(&format!("{at}: {why}; it is tried again\n"))?;
-            }
-            Some(News::Forbidden(what)) => {
-                say(&format!(
-                    "{at}: the broker gives no right: {what}; its list of rights decides\n"
-                ))?;
-            }
-            Some(News::Over(gone)) => break Some(gone),
-        }
-        if values.is_other() {
-            found = discovered(args, &topics, &values);
-        }
-        while is_there
-            && found
-                .last()
-                .is_some_and(|message| voice.say(message.clone()))
-        {
-            found.pop();
-        }
-        if is_there && follow.is_there() {
-            values.due(Instant::now(), |message| voice.say(message));
-        }
+        run.tell();
         if let Ok(Some(_)) = signals.read_signal() {
             break None;
         }
@@ -123,10 +90,95 @@ pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
     inbox.end();
     let _ = hands.join();
     match over {
-        Some(gone) => Err(Error::Refused(format!("{at}: {gone}")).into()),
+        Some(gone) => Err(Error::Refused(format!("{}: {gone}", run.at)).into()),
         None => {
-            client.end();
+            run.client.end();
             Ok(0)
+        }
+    }
+}
+
+/// What is between the tree and the broker.
+struct Run<'a> {
+    args: &'a MqttArgs,
+    /// Where the broker is, for a person.
+    at: String,
+    topics: Topics,
+    voice: Voice,
+    client: Client,
+    follow: Follow,
+    values: Values,
+    /// What Home Assistant is still to be told.
+    found: Vec<Message>,
+    /// The broker is there.
+    is_there: bool,
+}
+
+impl Run<'_> {
+    /// Takes what has happened in the tree.
+    fn look(&mut self) -> Result<(), Refusal> {
+        let mut entries = Vec::new();
+        match self.follow.look(&mut entries) {
+            Change::Same => self.values.take(&entries),
+            Change::Gone => {
+                self.client.life(false);
+                say("the tree is gone; waiting for it\n")?;
+            }
+            Change::Back => {
+                self.values.take(&self.follow.beginning());
+                self.client.life(true);
+                say("the tree is there again\n")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Hears what became of the connection; why it is given up, if it is.
+    fn hear(&mut self) -> Result<Option<Gone>, Refusal> {
+        let at = &self.at;
+        match self.client.news() {
+            None => {}
+            Some(News::Connected) => {
+                self.is_there = true;
+                say(&format!("{at}: connected\n"))?;
+                self.client.life(self.follow.is_there());
+                self.values.begin_anew();
+                self.found = discovered(self.args, &self.topics, &self.values);
+            }
+            Some(News::Lost(why)) => {
+                self.is_there = false;
+                let why = harmless(&why);
+                say(&format!("{at}: {why}; it is tried again\n"))?;
+            }
+            Some(News::Forbidden(what)) => {
+                say(&format!(
+                    "{at}: the broker gives no right: {what}; its list of rights decides\n"
+                ))?;
+            }
+            Some(News::Over(gone)) => return Ok(Some(gone)),
+        }
+        Ok(None)
+    }
+
+    /// Tells what is due, as far as there is room.
+    fn tell(&mut self) {
+        if self.values.is_other() {
+            self.found = discovered(self.args, &self.topics, &self.values);
+        }
+        if !self.is_there {
+            return;
+        }
+        while self
+            .found
+            .last()
+            .is_some_and(|message| self.voice.say(message.clone()))
+        {
+            self.found.pop();
+        }
+        if self.follow.is_there() {
+            let voice = &self.voice;
+            self.values
+                .due(Instant::now(), |message| voice.say(message));
         }
     }
 }

@@ -288,6 +288,31 @@ fn first_chunk(bytes: &[u8]) -> usize {
     at
 }
 
+/// One that is damaged in the middle is not replaced, and a new file has what is whole.
+fn mends_around_damage(home: &Home) {
+    let mut damaged = fs::read(home.0.path("run.mcap")).expect("a recording");
+    let chunk = first_chunk(&damaged);
+    // Behind what a chunk says of itself, in what is compressed.
+    damaged[chunk + 9 + 45] ^= 1;
+    fs::write(home.0.path("damaged.mcap"), &damaged).expect("a file");
+    let refused = home.run(&["mend", "damaged.mcap"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        refused.stderr.contains("not only cut"),
+        "{}",
+        refused.stderr
+    );
+    let mended = home
+        .run(&["mend", "damaged.mcap", "-o", "whole.mcap"])
+        .good();
+    assert!(mended.contains("left out: 1 damaged"), "{mended}");
+    home.run(&["info", "whole.mcap"]).good();
+    assert_eq!(
+        fs::read(home.0.path("damaged.mcap")).expect("it stays"),
+        damaged
+    );
+}
+
 #[test]
 fn a_killed_recorder_leaves_what_can_be_mended() {
     let Some(home) = Home::new() else { return };
@@ -322,28 +347,7 @@ fn a_killed_recorder_leaves_what_can_be_mended() {
     let again = home.run(&["mend", "run.mcap"]);
     assert!(again.stdout.contains("it is whole"), "{}", again.stdout);
     home.0.file("old.mcap", "old");
-    // One that is damaged in the middle is not replaced, and a new file has what is whole.
-    let mut damaged = fs::read(home.0.path("run.mcap")).expect("a recording");
-    let chunk = first_chunk(&damaged);
-    // Behind what a chunk says of itself, in what is compressed.
-    damaged[chunk + 9 + 45] ^= 1;
-    fs::write(home.0.path("damaged.mcap"), &damaged).expect("a file");
-    let refused = home.run(&["mend", "damaged.mcap"]);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        refused.stderr.contains("not only cut"),
-        "{}",
-        refused.stderr
-    );
-    let mended = home
-        .run(&["mend", "damaged.mcap", "-o", "whole.mcap"])
-        .good();
-    assert!(mended.contains("left out: 1 damaged"), "{mended}");
-    home.run(&["info", "whole.mcap"]).good();
-    assert_eq!(
-        fs::read(home.0.path("damaged.mcap")).expect("it stays"),
-        damaged
-    );
+    mends_around_damage(&home);
     let words = ["mend", "run.mcap", "-o", "old.mcap"];
     let refused = home.run(&words);
     assert_eq!(refused.status.code(), Some(1));

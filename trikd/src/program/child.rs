@@ -230,18 +230,8 @@ fn words(
     })
 }
 
-/// Starts a program within its limits, in the folder of programs. It leads a session of its own, and says what it says by
-/// itself in this language.
-///
-/// # Errors
-/// There can be no more processes or descriptors.
-pub fn start(
-    settings: &Settings,
-    owner: Option<&Owner>,
-    (language, heard): (Language, Heard),
-    path: Option<&Path>,
-    reaper: &Reaper,
-) -> io::Result<Child> {
+/// The command that starts what is in its further words within the limits of programs, as their owner.
+fn within_limits(settings: &Settings, owner: Option<&Owner>) -> Command {
     let mut command = this_program();
     command
         .arg("launch")
@@ -260,6 +250,22 @@ pub fn start(
             .arg("--gid")
             .arg(user.gid.to_string());
     }
+    command
+}
+
+/// Starts a program within its limits, in the folder of programs. It leads a session of its own, and says what it says by
+/// itself in this language.
+///
+/// # Errors
+/// There can be no more processes or descriptors.
+pub fn start(
+    settings: &Settings,
+    owner: Option<&Owner>,
+    (language, heard): (Language, Heard),
+    path: Option<&Path>,
+    reaper: &Reaper,
+) -> io::Result<Child> {
+    let mut command = within_limits(settings, owner);
     let directories =
         std::env::var_os("PATH").unwrap_or_else(|| "/usr/local/bin:/usr/bin:/bin".into());
     let words = words(settings, &directories, language, path)?;

@@ -9,10 +9,12 @@ fn counting_beside_many() -> Vec<u8> {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let clear = sketch.block("Function", &[("Body", "n = 0; m = 0")]);
-    let fork = sketch.block("Fork", &[]);
-    sketch.chain(&[start, clear, fork]);
+    // The first blocks are those of the counter, so that they have its ids.
+    let forward = sketch.block("TrikV6EnginesForward", &[("Ports", "M1"), ("Power", "40")]);
     let count = sketch.block("Function", &[("Body", "n = n + 1\nprint(n)")]);
     let wait = sketch.block("Timer", &[("Delay", "30")]);
+    let fork = sketch.block("Fork", &[]);
+    sketch.chain(&[start, clear, forward, fork]);
     sketch.chain(&[count, wait, count]);
     sketch.guarded(fork, count, "main");
     let many: Vec<_> = (0..3000)

@@ -4,7 +4,7 @@
 //! types that never fit, and what would change the run. Computes nothing.
 
 use super::{Flow, each_node, given, taught};
-use crate::program::{Leads, Program, wanted};
+use crate::program::{Leads, Program};
 use crate::words;
 use lang_expr::reserved::SENSORS;
 use lang_expr::tree::{Node as Part, Tree};
@@ -99,7 +99,7 @@ pub(crate) fn no_assignment(known: &Known<'_>, name: &str) -> Option<Problem> {
     let mut said: BTreeSet<Rc<str>> = BTreeSet::new();
     // Blocks that nothing leads to are text of the program all the same, as are names that are only read.
     for text in &program.sources {
-        let source = Source::new(&text.text, wanted(text.wanted));
+        let source = Source::new(&text.text, text.wanted.wanted());
         said.extend(source.names().map(Rc::from));
     }
     for node in (0..).take(program.len()) {

@@ -5,10 +5,9 @@
 
 use std::fmt;
 
-use super::{Back, Breakpoint, Spot, Step, words};
+use super::{Back, Breakpoint, Spot, Step};
 use crate::limits;
 use crate::words::shortened;
-use lang_text::problem::Words;
 
 /// Something that is asked of a debugger.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -89,19 +88,6 @@ pub enum Wanted {
     Assignment,
     /// An expression.
     Expression,
-}
-
-impl NoOrder {
-    /// For a person.
-    pub fn words(&self) -> Words {
-        words::no_order(self)
-    }
-}
-
-impl fmt::Display for NoOrder {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words().english)
-    }
 }
 
 /// All words with which orders begin.

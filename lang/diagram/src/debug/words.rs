@@ -5,9 +5,23 @@
 use super::order::{NoOrder, WORDS, Wanted};
 use crate::limits;
 use lang_text::problem::Words;
+use std::fmt;
+
+impl NoOrder {
+    /// For a person.
+    pub fn words(&self) -> Words {
+        no_order(self)
+    }
+}
+
+impl fmt::Display for NoOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words().english)
+    }
+}
 
 /// Why a text is no order.
-pub(super) fn no_order(why: &NoOrder) -> Words {
+fn no_order(why: &NoOrder) -> Words {
     match why {
         NoOrder::Unknown(word) => Words::new(
             format!("'{word}' is no order; orders are {WORDS}"),

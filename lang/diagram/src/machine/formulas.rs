@@ -2,7 +2,7 @@
 //!
 //! Owns the border to the language of expressions. Knows no blocks: a problem has no place but the one in its text.
 
-use crate::program::{Program, Source as Index, wanted};
+use crate::program::{Program, Source as Index};
 use lang_expr::reserved::SENSORS;
 use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
 use lang_text::problem::Problem;
@@ -31,7 +31,7 @@ impl Formulas {
         }
         Self {
             sources: sources
-                .map(|text| Source::new(&text.text, wanted(text.wanted)))
+                .map(|text| Source::new(&text.text, text.wanted.wanted()))
                 .collect(),
             names,
             store: Store::default(),
