@@ -19,6 +19,7 @@ pub mod answers;
 pub mod desk;
 pub mod hindsight;
 mod history;
+mod no_order;
 pub mod order;
 mod past;
 mod points;

@@ -9,6 +9,8 @@ use super::{Back, Breakpoint, Spot, Step};
 use crate::limits;
 use crate::words::shortened;
 
+pub use super::no_order::{NoOrder, WORDS, Wanted};
+
 /// Something that is asked of a debugger.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Order {
@@ -51,48 +53,6 @@ pub enum Order {
     /// Compute an expression.
     Evaluate(Box<str>),
 }
-
-/// Why a text is no order.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub enum NoOrder {
-    /// No order begins with this word.
-    Unknown(Box<str>),
-    /// The order lacks something.
-    Lacks(Wanted),
-    /// This word cannot be there.
-    Strange(Box<str>),
-    /// It is longer than an order may be.
-    TooLong,
-}
-
-/// What an order may lack.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Wanted {
-    /// The id of a block.
-    Block,
-    /// The name of a variable.
-    Variable,
-    /// The name of a thread.
-    Thread,
-    /// The number of a breakpoint.
-    Number,
-    /// How many hits a breakpoint lets pass.
-    Hits,
-    /// What a breakpoint stops on.
-    Condition,
-    /// What a breakpoint says.
-    Line,
-    /// A time of the program.
-    Time,
-    /// A variable and its value.
-    Assignment,
-    /// An expression.
-    Expression,
-}
-
-/// All words with which orders begin.
-pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, watch, \
-    clear, enable, disable, breakpoints, errors, motors, set, evaluate";
 
 impl Order {
     /// What a text asks for.

@@ -2,7 +2,7 @@
 //!
 //! Owns the words. What is wrong with an expression is said by the language of expressions.
 
-use super::order::{NoOrder, WORDS, Wanted};
+use super::no_order::{NoOrder, WORDS, Wanted};
 use crate::limits;
 use lang_text::problem::Words;
 use std::fmt;
