@@ -136,6 +136,7 @@ impl Client {
             tell,
             mark: format!("{:x}-{:x}", now_ns(), std::process::id()),
             is_marked: false,
+            must_subscribe: false,
         };
         thread::Builder::new()
             .name("mqtt".to_owned())
@@ -233,6 +234,8 @@ struct Serving {
     mark: String,
     /// It was left with the broker that is there.
     is_marked: bool,
+    /// The broker was not asked yet for what is for us.
+    must_subscribe: bool,
 }
 
 impl Serving {
@@ -253,9 +256,11 @@ impl Serving {
                         let _ = self.tell.send(News::Over(gone));
                         return;
                     }
+                    self.subscribe();
                 }
-                Ok(Event::Outgoing(_)) => {}
+                Ok(Event::Outgoing(_)) => self.subscribe(),
                 Err(why) => {
+                    self.must_subscribe = false;
                     self.is_marked = false;
                     if let Some(gone) = self.gone(&why, was_there) {
                         let _ = self.tell.send(News::Over(gone));
@@ -273,6 +278,22 @@ impl Serving {
         }
     }
 
+    /// Asks for commands, and for the mark. What is left of the last connection may fill the queue: then it is tried again.
+    fn subscribe(&mut self) {
+        if !self.must_subscribe {
+            return;
+        }
+        let mut filter = Filter::new(self.topics.commands(), QoS::AtLeastOnce);
+        // What is kept is old, and moves nothing.
+        filter.retain_forward_rule = RetainForwardRule::Never;
+        // One that would be kept is told from one that is not.
+        filter.preserve_retain = true;
+        let mut mark = Filter::new(self.topics.bridge(), QoS::AtLeastOnce);
+        mark.nolocal = true;
+        let asked = self.client.try_subscribe_many([filter, mark]);
+        self.must_subscribe = asked.is_err();
+    }
+
     fn leave_mark(&mut self) {
         let mark = Message::retained(self.topics.bridge(), &*self.mark);
         self.is_marked = Voice(self.client.clone()).say(mark);
@@ -282,14 +303,7 @@ impl Serving {
     fn take(&mut self, packet: Packet) -> Option<Gone> {
         let news = match packet {
             Packet::ConnAck(_) => {
-                let mut filter = Filter::new(self.topics.commands(), QoS::AtLeastOnce);
-                // What is kept is old, and moves nothing.
-                filter.retain_forward_rule = RetainForwardRule::Never;
-                // One that would be kept is told from one that is not.
-                filter.preserve_retain = true;
-                let mut mark = Filter::new(self.topics.bridge(), QoS::AtLeastOnce);
-                mark.nolocal = true;
-                let _ = self.client.try_subscribe_many([filter, mark]);
+                self.must_subscribe = true;
                 None
             }
             Packet::Publish(publish) if *publish.topic == *self.topics.bridge().as_bytes() => {

@@ -30,6 +30,8 @@ pub enum Undone {
     Value(String, String),
     /// Another program drives it: who.
     Held(String, String),
+    /// A stop came, and the one who drove goes on: for how long nothing may come, in ms.
+    Stopped(String, u128),
     /// Too many actuators are driven at once.
     Many,
     /// The tree does not take it: why.
@@ -47,6 +49,10 @@ impl fmt::Display for Undone {
             Self::Measures(node) => write!(f, "{node}: it only measures; nothing can be written"),
             Self::Value(node, what) => write!(f, "{node}: it takes {what}"),
             Self::Held(node, who) => write!(f, "{node}: another program drives it: {who}"),
+            Self::Stopped(node, ms) => write!(
+                f,
+                "{node}: it was stopped; it can be set again when nobody has set it for {ms} ms"
+            ),
             Self::Many => write!(f, "more than {LEASES_MAX} actuators are driven at once"),
             Self::Tree(node, why) => write!(f, "{node}: {why}"),
             Self::Robot(why) => write!(f, "{why}"),
@@ -74,6 +80,8 @@ pub struct Hands {
     /// What was last known of the tree.
     nodes: Vec<Node>,
     leases: BTreeMap<String, Lease>,
+    /// Actuators that were driven when a stop came, and until when nobody may go on with that.
+    stopped: BTreeMap<String, Instant>,
 }
 
 impl Hands {
@@ -86,6 +94,7 @@ impl Hands {
             deadman,
             nodes: Vec::new(),
             leases: BTreeMap::new(),
+            stopped: BTreeMap::new(),
         }
     }
 
@@ -108,11 +117,7 @@ impl Hands {
 
     fn carry(&mut self, letter: &Letter) -> Result<(), Undone> {
         match &letter.order {
-            Order::Stop => {
-                // Those who drove begin anew.
-                self.leases.clear();
-                self.robot.stop().map_err(Undone::Robot)
-            }
+            Order::Stop => self.stop(),
             Order::Run(file) => self.robot.run(file).map_err(Undone::Robot),
             // One who sent it may have gone since.
             Order::Set(..) | Order::Alive if letter.at.elapsed() >= self.deadman => {
@@ -124,6 +129,28 @@ impl Hands {
                 self.go_on();
                 Ok(())
             }
+        }
+    }
+
+    /// Everything comes to rest, and the program ends. One who goes on to drive is refused until it has been silent: a stop
+    /// would last no longer than the pause between two commands.
+    fn stop(&mut self) -> Result<(), Undone> {
+        let until = Instant::now() + self.deadman;
+        let driven = std::mem::take(&mut self.leases).into_keys();
+        self.stopped.extend(driven.map(|node| (node, until)));
+        self.robot.stop().map_err(Undone::Robot)
+    }
+
+    /// Whether it was stopped while somebody drove it, who goes on.
+    fn is_stopped(&mut self, node: &str) -> bool {
+        let now = Instant::now();
+        self.stopped.retain(|_, until| now < *until);
+        match self.stopped.get_mut(node) {
+            Some(until) => {
+                *until = now + self.deadman;
+                true
+            }
+            None => false,
         }
     }
 
@@ -139,32 +166,46 @@ impl Hands {
         refused.map_or(Ok(()), |why| Err(Undone::Robot(why)))
     }
 
-    /// A node that can be written. The tree is looked at again for a name that is not known: only what it has is a path.
+    /// A node that can be written, with its format as it is now. The tree is looked at again for a name that is not known: only
+    /// what it has is a path.
     fn node(&mut self, path: &str) -> Result<Node, Undone> {
-        let known = |nodes: &[Node]| nodes.iter().find(|node| node.path == path).cloned();
-        let found = known(&self.nodes).filter(|_| self.root.join(path).is_dir());
+        let known = |nodes: &[Node]| {
+            let is_it =
+                |node: &&Node| node.path == path || node.aliases.iter().any(|other| other == path);
+            nodes.iter().find(is_it).cloned()
+        };
+        let format = |node: &Node| fs::read_to_string(self.root.join(&node.path).join("format"));
+        let found = known(&self.nodes).and_then(|node| Some((format(&node).ok()?, node)));
         let found = match found {
-            Some(node) => Some(node),
+            Some(found) => Some(found),
             None => {
                 self.nodes = nodes::find(&self.root);
-                known(&self.nodes)
+                known(&self.nodes).and_then(|node| Some((format(&node).ok()?, node)))
             }
         };
         match found {
             None => Err(Undone::Absent(path.to_owned())),
-            Some(node) if !node.is_written => Err(Undone::Measures(path.to_owned())),
-            Some(node) => Ok(node),
+            Some((_, node)) if !node.is_written => Err(Undone::Measures(path.to_owned())),
+            Some((format, node)) => Ok(Node { format, ..node }),
         }
     }
 
     fn set(&mut self, path: &str, text: &str) -> Result<(), Undone> {
         let node = self.node(path)?;
         let text = value(&node, text)?;
-        let directory = self.root.join(&node.path);
-        if !node.rest.is_empty() {
-            self.hold(&node, &directory.join("owner"))?;
+        if self.is_stopped(&node.path) {
+            let ms = self.deadman.as_millis();
+            return Err(Undone::Stopped(node.path, ms));
         }
-        let tree = |why: io::Error| Undone::Tree(path.to_owned(), why.to_string());
+        let directory = self.root.join(&node.path);
+        let tree = |why: io::Error| Undone::Tree(node.path.clone(), why.to_string());
+        // Whatever can drive has this file, also a node that stands for an actuator elsewhere.
+        let owner = directory.join("owner");
+        match fs::metadata(&owner) {
+            Ok(_) => self.hold(&node, &owner)?,
+            Err(why) if why.kind() == io::ErrorKind::NotFound => {}
+            Err(why) => return Err(tree(why)),
+        }
         let file = OpenOptions::new()
             .write(true)
             .truncate(true)
@@ -172,10 +213,10 @@ impl Hands {
         let written = file.and_then(|mut file| file.write_all(format!("{text}\n").as_bytes()));
         if let Err(why) = written {
             // One that was taken away is asked for anew with the next value.
-            self.leases.remove(path);
+            self.leases.remove(&node.path);
             return Err(tree(why));
         }
-        if let Some(lease) = self.leases.get_mut(path) {
+        if let Some(lease) = self.leases.get_mut(&node.path) {
             lease.until = Instant::now() + self.deadman;
         }
         Ok(())

@@ -132,6 +132,10 @@ struct Waiting {
     stop: Option<Letter>,
     /// By actuator, so that one who sends faster than it can be done drives with the newest value.
     values: BTreeMap<String, Letter>,
+    /// Actuators with a value, the one that has waited longest first.
+    turns: VecDeque<String>,
+    /// A stop has come, and nothing was brought to rest since.
+    must_brake: bool,
     others: VecDeque<Letter>,
     /// Not to be carried out; those who sent them are told.
     overtaken: Vec<Letter>,
@@ -193,12 +197,17 @@ impl Inbox {
                 waiting.overtaken.extend(values.chain(others));
                 // One who floods is told no more than fits.
                 waiting.overtaken.truncate(ORDERS_MAX * 2);
+                waiting.turns.clear();
                 waiting.stop = Some(letter);
+                waiting.must_brake = true;
             }
             Order::Set(node, _) => {
                 let is_new = !waiting.values.contains_key(node);
                 if is_new && waiting.values.len() >= ORDERS_MAX {
                     return Err(Untaken::Full);
+                }
+                if is_new {
+                    waiting.turns.push_back(node.clone());
                 }
                 waiting.values.insert(node.clone(), letter);
             }
@@ -210,22 +219,33 @@ impl Inbox {
             }
         }
         drop(waiting);
-        self.news.notify_one();
+        self.news.notify_all();
         Ok(())
+    }
+
+    /// Waits for a stop for as long; true: one has come, and everything is to be brought to rest now, whatever else is done.
+    pub fn brake(&self, patience: Duration) -> bool {
+        let waiting = self.waiting();
+        let is_calm = |waiting: &mut Waiting| !waiting.must_brake && !waiting.is_over;
+        let waited = self.news.wait_timeout_while(waiting, patience, is_calm);
+        let (mut waiting, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut waiting.must_brake)
     }
 
     /// Nothing is taken out any more.
     pub fn end(&self) {
         self.waiting().is_over = true;
-        self.news.notify_one();
+        self.news.notify_all();
     }
 
     /// What is next, waited for as long; None: nothing came. [`Inbox::is_over`] says whether something may come.
     pub fn next(&self, patience: Duration) -> Option<Next> {
         let waiting = self.waiting();
         let is_empty = |waiting: &mut Waiting| {
-            let has_some =
-                waiting.stop.is_some() || !waiting.values.is_empty() || !waiting.others.is_empty();
+            let has_some = waiting.stop.is_some()
+                || !waiting.values.is_empty()
+                || !waiting.others.is_empty()
+                || !waiting.overtaken.is_empty();
             !has_some && !waiting.is_over
         };
         let waited = self.news.wait_timeout_while(waiting, patience, is_empty);
@@ -233,7 +253,10 @@ impl Inbox {
         if waiting.is_over {
             return None;
         }
-        let value = |waiting: &mut Waiting| waiting.values.pop_first().map(|(_, letter)| letter);
+        let value = |waiting: &mut Waiting| {
+            let next = waiting.turns.pop_front()?;
+            waiting.values.remove(&next)
+        };
         let stop = waiting.stop.take();
         // A program that begins may not wait for ever behind one who sends values without end.
         let carried = stop
@@ -309,6 +332,31 @@ mod tests {
             })
             .collect();
         assert_eq!(told, ["run", "set/motors/M3"]);
+    }
+
+    #[test]
+    fn one_who_sends_without_end_keeps_no_other_actuator_waiting() {
+        let inbox = inbox();
+        takes(&inbox, "set/b", "0").unwrap();
+        for _ in 0..3 {
+            takes(&inbox, "set/a", "1").unwrap();
+        }
+        let words = |order: Option<Order>| order.map(|order| order.words());
+        assert_eq!(words(next(&inbox)), Some("set/b".to_owned()));
+        takes(&inbox, "set/b", "0").unwrap();
+        assert_eq!(words(next(&inbox)), Some("set/a".to_owned()));
+        assert_eq!(words(next(&inbox)), Some("set/b".to_owned()));
+        assert_eq!(next(&inbox), None);
+    }
+
+    #[test]
+    fn a_stop_brakes_at_once_and_once() {
+        let inbox = inbox();
+        assert!(!inbox.brake(NOW));
+        takes(&inbox, "stop", "").unwrap();
+        assert!(inbox.brake(NOW));
+        assert!(!inbox.brake(NOW));
+        assert_eq!(next(&inbox), Some(Order::Stop));
     }
 
     #[test]

@@ -98,6 +98,17 @@ impl Values {
         }
     }
 
+    /// Takes what another tree begins with: what the last one had and this one has not is gone.
+    pub fn replace(&mut self, entries: &[Entry]) {
+        let before = std::mem::take(&mut self.nodes);
+        self.take(entries);
+        self.is_other = true;
+        let left = before
+            .into_iter()
+            .filter(|(path, _)| !self.nodes.contains_key(path));
+        self.gone.extend(left.map(|(_, seen)| seen.topic));
+    }
+
     /// A node whose format changes is another one. None: its path cannot be a topic.
     fn know(&mut self, known: &Known) -> Option<&mut NodeState> {
         let node = &known.node;
@@ -309,6 +320,18 @@ mod tests {
         let topic = "trik/7b/anna/tel/sensors/D1".to_owned();
         assert_eq!(due(&mut values, begin), [(topic, Value::Null)]);
         assert_eq!(due(&mut values, begin), []);
+    }
+
+    #[test]
+    fn another_tree_takes_back_what_only_the_last_one_had() {
+        let (mut values, begin) = (values(), Instant::now());
+        for path in ["a", "b"] {
+            values.take(&[Entry::Sample(known(path, "u8 v"), 1, vec![7].into())]);
+        }
+        assert_eq!(due(&mut values, begin).len(), 2);
+        values.replace(&[Entry::Node(known("b", "u8 v"))]);
+        let gone = [("trik/7b/anna/tel/a".to_owned(), Value::Null)];
+        assert_eq!(due(&mut values, begin + REPEAT_TIME), gone);
     }
 
     #[test]

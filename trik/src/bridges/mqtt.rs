@@ -26,13 +26,15 @@ use ::bridge::mqtt::values::Values;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::fs;
 use std::os::fd::AsFd;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How often the hands look for leases that nobody uses any more.
 const LOOK_TIME: Duration = Duration::from_millis(50);
+/// For the last command.
+const END_TIME: Duration = Duration::from_secs(1);
 
 /// Serves until somebody stops it.
 ///
@@ -58,6 +60,7 @@ pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
     values.take(&follow.beginning());
     let client = Client::begin(settings, &topics, inbox.clone()).map_err(refused)?;
     let hands = carry_out(hands, inbox.clone(), client.voice())?;
+    brake(root, inbox.clone())?;
     let at = format!("{}:{}", args.broker.host, args.broker.port);
     say(&format!(
         "{shown}: {} at {at}; Ctrl-C ends it\n",
@@ -88,7 +91,11 @@ pub(super) fn serve(args: &MqttArgs) -> Result<u8, Refusal> {
     };
     // Those who drive rest before anybody hears that the robot is gone.
     inbox.end();
-    let _ = hands.join();
+    let until = Instant::now() + END_TIME;
+    // Hands that wait for a program of the robot give their leases back when this process ends.
+    while !hands.is_finished() && Instant::now() < until {
+        thread::sleep(LOOK_TIME);
+    }
     match over {
         Some(gone) => Err(Error::Refused(format!("{}: {gone}", run.at)).into()),
         None => {
@@ -125,7 +132,7 @@ impl Run<'_> {
                 say("the tree is gone; waiting for it\n")?;
             }
             Change::Back => {
-                self.values.take(&self.follow.beginning());
+                self.values.replace(&self.follow.beginning());
                 self.client.life(true);
                 say("the tree is there again\n")?;
             }
@@ -195,6 +202,22 @@ fn carry_out(mut hands: Hands, inbox: Arc<Inbox>, voice: Voice) -> Result<JoinHa
     };
     let thread = thread::Builder::new().name("hands".to_owned()).spawn(work);
     thread.map_err(|why| Error::system("a thread", why))
+}
+
+/// The thread that brings everything to rest as soon as a stop comes, whatever the hands wait for.
+fn brake(root: PathBuf, inbox: Arc<Inbox>) -> Result<(), Error> {
+    let work = move || {
+        while !inbox.is_over() {
+            if inbox.brake(LOOK_TIME) {
+                // The hands do it once more, and say what became of it.
+                let _ = fs::write(root.join("stop"), "1\n");
+            }
+        }
+    };
+    let thread = thread::Builder::new().name("brake".to_owned()).spawn(work);
+    thread
+        .map(drop)
+        .map_err(|why| Error::system("a thread", why))
 }
 
 /// What Home Assistant is told, if it is.

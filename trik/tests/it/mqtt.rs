@@ -125,7 +125,9 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
     let Some(broker) = Broker::new(home, "allow_anonymous true") else {
         return;
     };
-    let mut bridge = broker.bridge(home, &["--control", "--home-assistant"]);
+    // Long enough for a busy computer to say the value.
+    let words = ["--control", "--home-assistant", "--deadman", "5000"];
+    let mut bridge = broker.bridge(home, &words);
     bridge.says(": connected");
     // One who comes late is told what there is.
     let heard = broker.listener(&[]);
@@ -177,6 +179,15 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
         found.contains("\"availability_topic\":\"trik/7b/anna/life\""),
         "{found}"
     );
+    // One who goes on to drive after a stop is refused.
+    broker.says("set/motors/M3", "30", &[]);
+    eventually("a motor that runs", || power(&robot) == 30.0);
+    broker.says("stop", "", &[]);
+    comes_to_rest(&robot, "rest after a stop");
+    heard.says("answer {\"command\":\"stop\",\"ok\":true}");
+    broker.says("set/motors/M3", "30", &[]);
+    heard.says("motors/M3: it was stopped");
+    assert_eq!(power(&robot), 0.0);
     processes::signal(bridge.pid(), Signal::SIGINT);
     assert_eq!(bridge.code(), Some(0), "{}", bridge.said());
     heard.says("trik/7b/anna/life offline");
