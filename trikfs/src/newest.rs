@@ -180,7 +180,7 @@ impl Newest {
             self.finish(&waiting, Some(Error::Stale));
         }
         if let Some(node) = self.node.upgrade() {
-            self.page.drop(&node.engine);
+            self.page.close(&node.engine);
         }
         // A sampler that is inside the device right now closes the source when it comes out.
         if let Ok(mut work) = self.work.try_lock() {

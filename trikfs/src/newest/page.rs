@@ -5,7 +5,8 @@
 //! kernel, so that thread must never wait for the page.
 
 use crate::engine::Engine;
-use std::sync::OnceLock;
+use crate::events::lock;
+use std::sync::{Mutex, OnceLock};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// What the kernel keeps of one file.
@@ -19,6 +20,8 @@ pub(super) struct Page {
     is_filled: AtomicBool,
     /// The page is to be dropped soon, by the schedule.
     is_unwanted: AtomicBool,
+    /// The node left the tree. Held during a fill: a fill that has begun ends before the page is dropped for good.
+    is_closed: Mutex<bool>,
 }
 
 impl Page {
@@ -63,8 +66,11 @@ impl Page {
         };
         let has_readers = self.readers.load(Ordering::SeqCst) > 0;
         if has_readers && self.polled.load(Ordering::SeqCst) == 0 {
-            self.is_filled.store(true, Ordering::SeqCst);
-            kernel.store(ino, tuple);
+            let is_closed = lock(&self.is_closed);
+            if !*is_closed {
+                self.is_filled.store(true, Ordering::SeqCst);
+                kernel.store(ino, tuple);
+            }
         } else if self.is_filled.swap(has_readers, Ordering::SeqCst) {
             // Readers that come to us leave their answers in the page as well.
             kernel.invalidate(ino);
@@ -76,6 +82,12 @@ impl Page {
         if let (Some(kernel), Some(&ino)) = (engine.kernel(), self.ino.get()) {
             kernel.invalidate(ino);
         }
+    }
+
+    /// The node leaves the tree: nothing stays in the page, and nothing comes into it again.
+    pub(super) fn close(&self, engine: &Engine) {
+        *lock(&self.is_closed) = true;
+        self.drop(engine);
     }
 
     /// Whether there may be anything in it.
