@@ -204,6 +204,8 @@ struct Target<W: Write + Seek> {
     channels: HashMap<u16, (u16, String)>,
     /// What the summary of the old one says.
     known: Option<Summary>,
+    /// Where the record that is copied begins in the old one.
+    at: u64,
 }
 
 impl<W: Write + Seek> Target<W> {
@@ -218,6 +220,7 @@ impl<W: Write + Seek> Target<W> {
             schemas: HashMap::new(),
             channels: HashMap::new(),
             known: None,
+            at: 0,
         }
     }
 
@@ -244,14 +247,14 @@ impl<W: Write + Seek> Target<W> {
                     reader.notify_read(read);
                 }
                 Ok(LinearReadEvent::Record { opcode, data }) => {
-                    let begin = at;
+                    self.at = at;
                     at += (HEADER_BYTES + data.len()) as u64;
                     match self.take_whole(opcode, data, saved, is_wanted) {
                         Ok(true) => {}
                         Ok(false) => break,
                         // A damaged chunk gives nothing, and the next record may be whole.
                         Err(Stop::Damage(error)) if self.is_begun => {
-                            saved.note(error, begin);
+                            saved.note(error, self.at);
                             saved.left_out += 1;
                         }
                         Err(Stop::Damage(_)) => break,
@@ -358,7 +361,7 @@ impl<W: Write + Seek> Target<W> {
                 let known = self.known.as_ref();
                 if !knows(out, &mut self.channels, known, header.channel_id).map_err(disk)? {
                     // Others of its chunk may be known.
-                    saved.note(Error::Damaged("an unknown channel".to_owned()), 0);
+                    saved.note(Error::Damaged("an unknown channel".to_owned()), self.at);
                     saved.left_out += 1;
                     return Ok(true);
                 }

@@ -53,7 +53,9 @@ impl Admission {
         };
         let Ok(place) = places.clone().try_acquire_owned() else {
             let most = limits::BROWSERS_MAX;
-            let why = format!("{most} browsers look already: close some, or wait");
+            let why = format!(
+                "{most} browsers with the same rights are here already: close some, or wait"
+            );
             return text(StatusCode::SERVICE_UNAVAILABLE, why);
         };
         let number = self.number.fetch_add(1, Ordering::Relaxed);

@@ -36,6 +36,7 @@ use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::Port;
 use lang_diagram::program::Program;
 use lang_diagram::stand_in::{Motion, motion};
+use lang_text::problem::Problem;
 
 use crate::field::{self, Field, SensorKind};
 use crate::geometry::Point;
@@ -83,6 +84,14 @@ impl Setup {
 pub trait Person: std::fmt::Debug + Send {
     /// What is answered to a question, which is asked again and again until then.
     fn ask(&mut self, question: Question<'_>) -> Answer;
+
+    /// Whether this is what was just answered, and can be asked once more.
+    fn may_ask_again(&mut self, _question: Question<'_>) -> bool {
+        false
+    }
+
+    /// Asks it once more: the answer was no good, for these reasons.
+    fn ask_again(&mut self, _question: Question<'_>, _why: &[Problem]) {}
 }
 
 /// What of a robot's devices was changed from outside its program.

@@ -95,7 +95,7 @@ pub struct Card {
     pub error: Option<String>,
     /// Stays with its age when the robot is gone.
     pub battery: Option<Battery>,
-    /// Who has started or stopped a program last, and is there.
+    /// The client that has started or stopped a program last, if it is still connected.
     pub commander: Option<Commander>,
     /// Who controls its debugger.
     pub debugger: Option<String>,

@@ -7,6 +7,7 @@
 
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::ports::{Device, GamepadPart, Pad, Port};
+use lang_text::problem::Problem;
 
 use super::floor::sensors;
 use super::ranges;
@@ -288,6 +289,17 @@ impl Brick for Handle<'_> {
             (Some(text), _) => Answer::Text(text),
             (None, Some(person)) => person.ask(question),
             (None, None) => Answer::Cancelled,
+        }
+    }
+
+    fn may_ask_again(&mut self, question: Question<'_>) -> bool {
+        let person = self.arena.person.as_mut();
+        person.is_some_and(|person| person.may_ask_again(question))
+    }
+
+    fn ask_again(&mut self, question: Question<'_>, why: &[Problem]) {
+        if let Some(person) = &mut self.arena.person {
+            person.ask_again(question, why);
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::arena::{Arena, Change, Handle};
 use crate::limits;
 use lang_diagram::brick::{Answer, Brick, Command, Figure, Question};
 use lang_diagram::ports::Port;
+use lang_text::problem::Problem;
 
 const DISPLAY: (&str, &str) = ("display", "DisplayPort");
 const MARKER: (&str, &str) = ("marker", "MarkerPort");
@@ -170,6 +171,14 @@ impl Brick for Recorder<'_> {
 
     fn ask(&mut self, question: Question<'_>) -> Answer {
         self.handle().ask(question)
+    }
+
+    fn may_ask_again(&mut self, question: Question<'_>) -> bool {
+        self.handle().may_ask_again(question)
+    }
+
+    fn ask_again(&mut self, question: Question<'_>, why: &[Problem]) {
+        self.handle().ask_again(question, why);
     }
 }
 

@@ -20,6 +20,8 @@ export class Table {
   isConnected = $state(false);
   /** There was a server: what it said last is shown when it is gone. */
   wasConnected = $state(false);
+  /** What is judged is known. */
+  isKnown = $state(false);
   readonly #link: Link<News, never>;
 
   constructor(address: string) {
@@ -46,6 +48,7 @@ export class Table {
   #hear(news: News): void {
     switch (news.is) {
       case 'hello':
+        this.isKnown = true;
         this.name = news.name;
         this.pupils = news.pupils;
         this.columns = news.columns;
