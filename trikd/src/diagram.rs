@@ -30,9 +30,11 @@ use debugging::Debugging;
 use lang_dataflow::read::{Language, language};
 use lang_diagram::lower::{World, lower};
 use lang_diagram::machine::{Machine, Options, STEP_MS};
+use lang_diagram::project::Project;
 use lang_diagram::read;
 use lang_expr::Compat;
 use lang_text::problem::{Locale, Problem, Severity};
+use live::Prepared;
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use robot::Robot;
@@ -129,23 +131,20 @@ impl Diagram {
         let bytes = read_save(path).map_err(failed)?;
         if ending(path) == source::ENDING {
             let source = Source::of_text(bytes, self.locale).map_err(failed)?;
-            return self.ready(&source, host).map_err(failed);
+            return self.ready(&source, watch, host).map_err(failed);
         }
         let opened = opened(&bytes, self.locale).map_err(failed)?;
         if language(&opened.save) == Language::Dataflow {
             let source = Source::of_save(opened);
-            return self.ready(&source, host).map_err(failed);
+            return self.ready(&source, watch, host).map_err(failed);
         }
         let lowered = lower(&opened.project, World::Robot)
             .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
-        for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
-            // A faulty block fails when it is reached, and what is wrong with it is told here.
-            let line = problem.in_locale(self.locale);
-            if watch.note_at_load(line.clone()) {
-                self.warn(problem.severity, &line, host);
-            }
-        }
+        // A faulty block fails when it is reached, and what is wrong with it is told here.
+        let warnings = warnings.take(limits::DIAGRAM_WARNINGS);
+        let told = warnings.map(|problem| (problem.severity, problem.in_locale(self.locale)));
+        watch.tell_warnings(told, host);
         let options = Options {
             compat: self.compat,
             ..Options::of(World::Robot)
@@ -155,27 +154,15 @@ impl Diagram {
     }
 
     /// A data-flow program that has nothing wrong with it; warnings are told.
-    fn ready(&self, source: &Source, host: &Host) -> Result<Loaded, NoDiagram> {
+    fn ready(&self, source: &Source, watch: &mut Watch, host: &Host) -> Result<Loaded, NoDiagram> {
         let checked = lang_dataflow::check::check(&source.project);
         let all = [&source.problems[..], &checked.problems].concat();
         let errors = source.errors(&all, self.locale);
         if checked.has_errors() || !errors.is_empty() {
             return Err(NoDiagram::Problems(errors));
         }
-        let shown = &all[..all.len().min(limits::DIAGRAM_WARNINGS)];
-        let lines = source.lines(shown, self.locale);
-        for (problem, line) in shown.iter().zip(&lines) {
-            self.warn(problem.severity, line, host);
-        }
+        watch.tell_warnings(source.warnings(&all, self.locale), host);
         Ok(Loaded::Flow(Rc::new(checked.program)))
-    }
-
-    /// Tells something that keeps nothing from running.
-    fn warn(&self, severity: Severity, line: &str, host: &Host) {
-        let severity = severity.words();
-        let severity = severity.in_locale(self.locale);
-        // Who cannot be told cannot be told that either.
-        let _ = host.info(&format!("{severity}: {line}"));
     }
 }
 
@@ -216,7 +203,7 @@ fn run(
 ) -> io::Result<()> {
     let start = Instant::now();
     let mut due = start;
-    let mut versions = Versions::default();
+    let mut versions = Versions::new(live::prepared, watch.locale());
     loop {
         let now = since(start);
         let goes_on = diagram.step(now, robot, watch);
@@ -239,7 +226,7 @@ fn hear_all(
     start: Instant,
     due: Instant,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
-    versions: &mut Versions,
+    versions: &mut Versions<Project>,
     host: &Host,
 ) -> io::Result<bool> {
     loop {
@@ -312,7 +299,7 @@ fn hear(
     message: Incoming,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
-    versions: &mut Versions,
+    versions: &mut Versions<Project>,
     host: &Host,
 ) -> io::Result<()> {
     match message {
@@ -352,7 +339,7 @@ fn begin_change(
     change: Incoming,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
-    versions: &mut Versions,
+    versions: &mut Versions<Project>,
     host: &Host,
 ) -> io::Result<()> {
     match change {
@@ -379,20 +366,24 @@ fn begin_change(
 
 /// Puts a version into force that is prepared, and begins what was asked for after it.
 fn take_version(
-    versions: &mut Versions,
+    versions: &mut Versions<Project>,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
     host: &Host,
 ) -> io::Result<()> {
     if let Some(ready) = versions.ready() {
-        let answer = match ready.project {
-            Ok(project) => {
+        let (answer, warnings) = match ready.version {
+            Ok(Prepared { source, warnings }) => {
                 let (session, mut driven) = diagram.parts(robot);
-                let version = (ready.when_gone, &*ready.name, &project, ready.locale);
-                live::patch(session, version, &mut driven, watch)
+                let version = (ready.when_gone, &*ready.name, &source, ready.locale);
+                let answer = live::patch(session, version, &mut driven, watch);
+                (answer, warnings)
             }
-            Err(answer) => answer,
+            Err(answer) => (answer, Vec::new()),
         };
+        if answer.is_changed {
+            watch.tell_warnings(warnings, host);
+        }
         tell_change(&answer, now, diagram, host)?;
     }
     while let Some(change) = versions.next() {

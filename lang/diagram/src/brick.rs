@@ -264,11 +264,14 @@ pub trait Brick {
         Answer::Cancelled
     }
 
-    /// The answer that this question got is no good, for these reasons. Whether the person is asked once more; if not, the
-    /// program makes of the answer what it can.
-    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
+    /// Whether the person who has just answered this question can be asked it once more. If not, the program makes of the
+    /// answer what it can.
+    fn may_ask_again(&mut self, _question: Question<'_>) -> bool {
         false
     }
+
+    /// Asks that person once more: the answer was no good, for these reasons.
+    fn ask_again(&mut self, _question: Question<'_>, _why: &[Problem]) {}
 }
 
 impl fmt::Display for Command<'_> {

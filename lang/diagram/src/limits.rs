@@ -70,8 +70,8 @@ pub const SEARCH_LOOK_WORK: u64 = 50;
 pub const ORDER_BYTES_MAX: usize = 16_384;
 /// Bytes of what a refusal repeats of it.
 pub const ORDER_WORD_BYTES_MAX: usize = 64;
-/// Threads that a refusal names.
-pub const THREADS_NAMED_MAX: usize = 20;
+/// Names that a refusal lists.
+pub const NAMES_LISTED_MAX: usize = 20;
 /// Characters of a name or a value that a debugger tells.
 pub const TOLD_CHARACTERS_MAX: usize = 1000;
 /// Bytes after which it tells of no more threads; a whole state is shorter than 256 KiB.

@@ -412,9 +412,11 @@ impl Brick for StandIn {
             .map_or(Answer::Waiting, Answer::Text)
     }
 
-    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
-        let asks = self.second_chances > 0;
+    fn may_ask_again(&mut self, _question: Question<'_>) -> bool {
+        self.second_chances > 0
+    }
+
+    fn ask_again(&mut self, _question: Question<'_>, _why: &[Problem]) {
         self.second_chances = self.second_chances.saturating_sub(1);
-        asks
     }
 }

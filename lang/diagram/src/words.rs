@@ -434,13 +434,10 @@ pub(super) fn never_changes(name: &str) -> Words {
     )
 }
 
-/// How many names a sentence lists.
-const LISTED: usize = 20;
-
 pub(super) fn no_variable(name: &str, known: &[&str]) -> Words {
     let (name, near) = (shortened(name), did_you_mean(name, known.iter().copied()));
-    let mut list = known[..known.len().min(LISTED)].join(", ");
-    if known.len() > LISTED {
+    let mut list = known[..known.len().min(limits::NAMES_LISTED_MAX)].join(", ");
+    if known.len() > limits::NAMES_LISTED_MAX {
         list.push_str(", ...");
     }
     let (english, russian) = match known {

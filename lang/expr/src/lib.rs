@@ -47,7 +47,7 @@ use tree::{Id, Tree};
 use words::{Fault, Reason};
 
 /// What a block asks an expression for.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Eq, Hash, PartialEq)]
 pub enum Wanted {
     /// Nothing: statements are run for what they do.
     Statements,
@@ -90,6 +90,22 @@ impl Source {
             wanted,
             tree,
             unreadable,
+            parts: Vec::new(),
+            reading: 0,
+            good_at: None,
+            faults: Vec::new(),
+            code: Code::default(),
+        }
+    }
+
+    /// The same text, read but not analysed.
+    #[must_use]
+    pub fn anew(&self) -> Self {
+        Self {
+            text: self.text.clone(),
+            wanted: self.wanted,
+            tree: self.tree.clone(),
+            unreadable: self.unreadable.clone(),
             parts: Vec::new(),
             reading: 0,
             good_at: None,

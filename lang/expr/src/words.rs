@@ -475,7 +475,7 @@ pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
             meant.english
         ),
         format!(
-            "Переменной '{name}' ничто не дало значения.{space}{}",
+            "Переменной '{name}' нигде не присвоено значение.{space}{}",
             meant.russian
         ),
     )

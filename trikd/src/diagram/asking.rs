@@ -79,24 +79,27 @@ impl Asking {
         answer
     }
 
-    /// Asks once more what a person has just answered, with what was wrong; false: the time for it is over, or no person has
-    /// answered.
+    /// Whether this is what a person has just answered, and there is time for another answer.
+    pub(super) fn may_again(&self, question: Question<'_>, now: Instant) -> bool {
+        let asked = (question.variable, question.prompt);
+        self.answered
+            .as_ref()
+            .is_some_and(|((variable, prompt), until)| {
+                (variable.as_str(), prompt.as_str()) == asked && now < *until
+            })
+    }
+
+    /// Asks that once more, with what was wrong, within the time that is left.
     pub(super) fn again(
         &mut self,
         question: Question<'_>,
         wrong: &str,
         now: Instant,
         tell: &mut dyn FnMut(u32, &str),
-    ) -> bool {
-        let asked = (question.variable, question.prompt);
-        let is_it = |((variable, prompt), until): &((String, String), Instant)| {
-            (variable.as_str(), prompt.as_str()) == asked && now < *until
-        };
-        let Some((_, until)) = self.answered.take().filter(is_it) else {
-            return false;
-        };
-        self.open(question, Some(wrong), (now, until), tell);
-        true
+    ) {
+        if let Some((_, until)) = self.answered.take() {
+            self.open(question, Some(wrong), (now, until), tell);
+        }
     }
 
     fn open(
@@ -193,18 +196,18 @@ mod tests {
             asking.ask(question("m"), now, tell)
         };
         assert_eq!(asked(&mut asking, now, &mut tell), Answer::Waiting);
-        assert!(!asking.again(question("m"), "too early", now, &mut tell));
+        assert!(!asking.may_again(question("m"), now));
         asking.hear(1, Some("x".into()));
         assert_eq!(asked(&mut asking, now, &mut tell), Answer::Text("x".into()));
         let later = now + Duration::from_secs(100);
-        assert!(!asking.again(question("n"), "another one", later, &mut tell));
-        asking.answered = Some((("m".into(), "How many?".into()), now + patience));
-        assert!(asking.again(question("m"), "no 'x'", later, &mut tell));
+        assert!(!asking.may_again(question("n"), later));
+        assert!(asking.may_again(question("m"), later));
+        asking.again(question("m"), "no 'x'", later, &mut tell);
         assert_eq!(asked(&mut asking, later, &mut tell), Answer::Waiting);
         // Nobody answers any more, and so nobody is asked once more.
         let late = now + patience;
         assert_eq!(asked(&mut asking, late, &mut tell), Answer::Cancelled);
-        assert!(!asking.again(question("m"), "no 'x'", late, &mut tell));
+        assert!(!asking.may_again(question("m"), late));
         let second = "{\"number\":2,\"variable\":\"m\",\"question\":\"How many?\",\"default\":\"\",\"seconds\":20,\"wrong\":\"no 'x'\"}";
         assert_eq!(told.get(1).map(String::as_str), Some(second));
     }

@@ -3,10 +3,11 @@
 //! Owns the time of a running program, and when something is told of it. What orders of a
 //! debugger do is known in `lang_dataflow::debug`, and what a new version keeps in `lang_dataflow::machine::patch`.
 
-use super::live::Answer;
+use super::live::{self, Answer, Prepared};
 use super::motors::Motors;
 use super::robot::Robot;
 use super::source::Source;
+use super::versions::{Ready, Versions};
 use super::watch::Watch;
 use super::{hear_until, next_step, since};
 use crate::engine::{Failure, Outcome};
@@ -66,6 +67,7 @@ struct Flow {
     warned: usize,
     was_stopped: bool,
     told_at: u32,
+    versions: Versions<Source>,
 }
 
 /// Steps until the program has ended or the daemon is gone; `is_debugged`: it stops before its first block.
@@ -87,6 +89,7 @@ pub(super) fn run(
         warned: 0,
         was_stopped: false,
         told_at: 0,
+        versions: Versions::new(prepared, watch.locale()),
     };
     if is_debugged {
         flow.desk.stop_first();
@@ -140,9 +143,33 @@ impl Flow {
                 }
                 self.hear(message, since(start), (robot, watch), host)?;
             }
-            let hear = |message| self.hear(message, since(start), (robot, watch), host);
-            if !hear_until(&Cell::new(due), host, hear)? {
+            if !self.hear_all(start, due, (robot, watch), host)? {
                 return Ok(());
+            }
+        }
+    }
+
+    /// Hears the daemon until a step is due, and takes each new version as soon as it is ready; whether the daemon is there.
+    fn hear_all(
+        &mut self,
+        start: Instant,
+        due: Instant,
+        (robot, watch): (&mut Robot<'_>, &mut Watch),
+        host: &Host,
+    ) -> io::Result<bool> {
+        loop {
+            let until = Cell::new(self.versions.until(due));
+            let hear = |message| {
+                self.hear(message, since(start), (&mut *robot, &mut *watch), host)?;
+                until.set(self.versions.until(due));
+                Ok(())
+            };
+            if !hear_until(&until, host, hear)? {
+                return Ok(false);
+            }
+            self.take_version(since(start), (robot, watch), host)?;
+            if Instant::now() >= due {
+                return Ok(true);
             }
         }
     }
@@ -211,21 +238,10 @@ impl Flow {
                 watch.set_wanted(is_wanted);
                 self.keep_diary(is_wanted);
             }
-            // There are no threads whose block could be gone.
-            Incoming::Patch(_, path, locale) => {
-                // Blocks have other numbers then.
-                if self.diary.as_ref().is_some_and(Diary::has_news) {
-                    let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
-                    watch.last_of_flow(machine, diary, now, host)?;
+            change @ (Incoming::Patch(..) | Incoming::Set(..)) => {
+                if let Some(change) = self.versions.keep(change) {
+                    self.begin_change(change, now, host)?;
                 }
-                let answer = self.patch(&path, robot, locale);
-                host.changed(answer.is_changed, &answer.text)?;
-                self.report(now, true, host)?;
-            }
-            Incoming::Set(text, locale) => {
-                let answer = self.set(&text, locale);
-                host.changed(answer.is_changed, &answer.text)?;
-                self.report(now, true, host)?;
             }
             Incoming::Debug {
                 client,
@@ -263,28 +279,78 @@ impl Flow {
         }
     }
 
-    /// Replaces the program by the one in a file, whole or not at all.
-    fn patch(&mut self, path: &Path, robot: &mut Robot<'_>, locale: Locale) -> Answer {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let source = match Source::open(path, locale) {
-            Ok(source) => source,
-            Err(why) => return Answer::unchanged(&name, &why.in_locale(locale)),
+    /// Begins to prepare a new version, or does another change at once.
+    fn begin_change(&mut self, change: Incoming, now: u32, host: &Host) -> io::Result<()> {
+        match change {
+            Incoming::Patch(when_gone, path, locale) => {
+                self.versions.begin(when_gone, path, locale);
+                Ok(())
+            }
+            Incoming::Set(text, locale) => {
+                let answer = self.set(&text, locale);
+                host.changed(answer.is_changed, &answer.text)?;
+                self.report(now, true, host)
+            }
+            // Nothing else is a change.
+            Incoming::Direct(_)
+            | Incoming::Mail(..)
+            | Incoming::Web
+            | Incoming::Watch(_)
+            | Incoming::Debug { .. }
+            | Incoming::DebugLeft
+            | Incoming::Reply(..)
+            | Incoming::Gone => Ok(()),
+        }
+    }
+
+    /// Puts a version into force that is prepared, and begins what was asked for after it.
+    fn take_version(
+        &mut self,
+        now: u32,
+        (robot, watch): (&mut Robot<'_>, &mut Watch),
+        host: &Host,
+    ) -> io::Result<()> {
+        if let Some(ready) = self.versions.ready() {
+            // Blocks have other numbers then.
+            if self.diary.as_ref().is_some_and(Diary::has_news) {
+                let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
+                watch.last_of_flow(machine, diary, now, host)?;
+            }
+            let answer = self.patch(ready, robot, watch, host);
+            host.changed(answer.is_changed, &answer.text)?;
+            self.report(now, true, host)?;
+        }
+        while let Some(change) = self.versions.next() {
+            self.begin_change(change, now, host)?;
+        }
+        Ok(())
+    }
+
+    /// Replaces the program by a version, whole or not at all. There are no threads whose block could be gone.
+    fn patch(
+        &mut self,
+        ready: Ready<Source>,
+        robot: &mut Robot<'_>,
+        watch: &mut Watch,
+        host: &Host,
+    ) -> Answer {
+        let Prepared { source, warnings } = match ready.version {
+            Ok(prepared) => prepared,
+            Err(answer) => return answer,
         };
-        let refused = |why: Refused| Answer::unchanged(&name, &explained(&why, &source, locale));
-        let version = match Version::of(&source.project) {
-            Ok(version) => version,
-            Err(why) => return refused(why),
-        };
-        match self.desk.patch(&version, &mut self.motors.over(robot)) {
+        let patched = Version::of_checked(&source.project)
+            .and_then(|version| self.desk.patch(&version, &mut self.motors.over(robot)));
+        match patched {
             Ok(patched) => {
                 if let Some(diary) = &mut self.diary {
                     *diary = Diary::new(self.desk.machine().program());
                 }
                 // It keeps those that there were.
                 self.warned = self.desk.machine().warnings().len();
-                Answer::changed(&name, &patched.to_string())
+                watch.tell_warnings(warnings, host);
+                Answer::changed(&ready.name, &patched.to_string())
             }
-            Err(why) => refused(why),
+            Err(why) => Answer::unchanged(&ready.name, &explained(&why, &source, ready.locale)),
         }
     }
 
@@ -301,6 +367,21 @@ impl Flow {
             Err(why) => Answer::unchanged(name, &why.in_locale(locale)),
         }
     }
+}
+
+/// The program in a file, if nothing is wrong with it whatever runs. Knows no program that runs, so that another thread may
+/// do it. `own` is the language of the program, `locale` that of the one who asks.
+fn prepared(path: &Path, own: Locale, locale: Locale) -> Result<Prepared<Source>, Answer> {
+    let name = live::name(path);
+    let source = Source::open(path, locale)
+        .map_err(|why| Answer::unchanged(&name, &why.in_locale(locale)))?;
+    let found = Version::mistakes(&source.project)
+        .map_err(|why| Answer::unchanged(&name, &explained(&why, &source, locale)))?;
+    let all = [&source.problems[..], &found].concat();
+    Ok(Prepared {
+        warnings: source.warnings(&all, own),
+        source,
+    })
 }
 
 fn explained(why: &Refused, source: &Source, locale: Locale) -> String {

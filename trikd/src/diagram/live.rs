@@ -5,14 +5,23 @@
 
 use super::watch::Watch;
 use super::{opened, read_save};
+use crate::limits;
 use crate::protocol::news;
 use lang_diagram::brick::Brick;
 use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::{Refused, Version, WhenGone};
 use lang_diagram::project::Project;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Severity};
 use std::path::Path;
+
+/// A version that may replace what runs.
+#[derive(Debug)]
+pub(super) struct Prepared<S> {
+    pub(super) source: S,
+    /// What is strange about it, in the language of the program, each with its severity. It is told as at a start.
+    pub(super) warnings: Vec<(Severity, String)>,
+}
 
 /// What a person is told.
 #[derive(Debug, Eq, PartialEq)]
@@ -46,14 +55,24 @@ pub(super) fn name(path: &Path) -> String {
 }
 
 /// The project in a file, if nothing is wrong with it whatever runs. Knows no program that runs, so that another thread may
-/// do it.
-pub(super) fn prepared(path: &Path, locale: Locale) -> Result<Project, Answer> {
+/// do it. `own` is the language of the program, `locale` that of the one who asks.
+pub(super) fn prepared(
+    path: &Path,
+    own: Locale,
+    locale: Locale,
+) -> Result<Prepared<Project>, Answer> {
     let name = name(path);
     let save = read_save(path).and_then(|bytes| opened(&bytes, locale));
     let save = save.map_err(|why| Answer::unchanged(&name, &why.in_locale(locale)))?;
     let checked = Version::mistakes(&save.project, World::Robot);
-    checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
-    Ok(save.project)
+    let found = checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
+    let shown = save.problems.iter().chain(&found);
+    let shown = shown.take(limits::DIAGRAM_WARNINGS);
+    let warnings = shown.map(|problem| (problem.severity, problem.in_locale(own)));
+    Ok(Prepared {
+        warnings: warnings.collect(),
+        source: save.project,
+    })
 }
 
 /// Replaces the program that runs by a project that is prepared, whole or not at all; the answer is in this language.

@@ -147,8 +147,12 @@ impl Brick for Driven<'_> {
         self.robot.ask(question)
     }
 
-    fn asks_again(&mut self, question: Question<'_>, why: &[Problem]) -> bool {
-        self.robot.asks_again(question, why)
+    fn may_ask_again(&mut self, question: Question<'_>) -> bool {
+        self.robot.may_ask_again(question)
+    }
+
+    fn ask_again(&mut self, question: Question<'_>, why: &[Problem]) {
+        self.robot.ask_again(question, why);
     }
 }
 

@@ -339,7 +339,11 @@ impl brick::Brick for Robot<'_> {
             })
     }
 
-    fn asks_again(&mut self, question: brick::Question<'_>, why: &[Problem]) -> bool {
+    fn may_ask_again(&mut self, question: brick::Question<'_>) -> bool {
+        self.asking.may_again(question, Instant::now())
+    }
+
+    fn ask_again(&mut self, question: brick::Question<'_>, why: &[Problem]) {
         let said: Vec<String> = why.iter().map(|one| one.said(self.locale)).collect();
         let host = self.host;
         self.asking.again(
@@ -350,7 +354,7 @@ impl brick::Brick for Robot<'_> {
                 // As of the question itself.
                 let _ = host.question(number, json);
             },
-        )
+        );
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {

@@ -5,6 +5,7 @@
 
 use super::{errors_among, opened, read_save, words};
 use crate::engine::NoDiagram;
+use crate::limits;
 use crate::scripts::ending;
 use lang_dataflow::project::Project;
 use lang_dataflow::read::{Language, language, project};
@@ -82,6 +83,13 @@ impl Source {
         let is_error = |one: &&Problem| one.severity == Severity::Error;
         let errors: Vec<Problem> = problems.iter().filter(is_error).cloned().collect();
         self.lines(&errors, locale)
+    }
+
+    /// What is told when a program with these problems starts: not more than a person reads.
+    pub fn warnings(&self, problems: &[Problem], locale: Locale) -> Vec<(Severity, String)> {
+        let shown = &problems[..problems.len().min(limits::DIAGRAM_WARNINGS)];
+        let severities = shown.iter().map(|problem| problem.severity);
+        severities.zip(self.lines(shown, locale)).collect()
     }
 
     /// A line for each problem; of a text it begins with line and column.

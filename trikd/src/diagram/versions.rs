@@ -1,48 +1,66 @@
-//! New versions of a diagram on their way to it: a thread of its own reads and checks each while the program runs, so that
+//! New versions of a program on their way to it: a thread of its own reads and checks each while the program runs, so that
 //! only the exchange itself comes between two steps.
 //!
-//! Owns the order of changes: what was asked for later is done later, also what would be quicker.
+//! Owns the order of changes: what was asked for later is done later, also what would be quicker. Knows no language: how a
+//! file is read and checked is given to it.
 
-use super::live::{self, Answer};
+use super::live::{self, Answer, Prepared};
+use super::words;
 use crate::host::Incoming;
 use crate::limits;
 use crate::protocol::program::WhenGone;
-use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
+/// Reads and checks the version in a file, or says what a person is told instead; with the language of the program, and that
+/// of the one who asks.
+pub(super) type Prepare<S> = fn(&Path, Locale, Locale) -> Result<Prepared<S>, Answer>;
+
 /// A version whose thread has said what it has to say of it.
 #[derive(Debug)]
-pub(super) struct Ready {
+pub(super) struct Ready<S> {
     pub(super) when_gone: WhenGone,
     pub(super) name: String,
-    /// Who has asked hears of it in this language.
+    /// The client that has asked hears of it in this language.
     pub(super) locale: Locale,
-    /// The project, or what a person is told instead.
-    pub(super) project: Result<Project, Answer>,
+    /// The version, or what a person is told instead.
+    pub(super) version: Result<Prepared<S>, Answer>,
 }
 
 /// One that is being prepared.
 #[derive(Debug)]
-struct Coming {
+struct Coming<S> {
     when_gone: WhenGone,
-    path: PathBuf,
+    name: String,
     locale: Locale,
-    project: Receiver<Result<Project, Answer>>,
+    version: Receiver<Result<Prepared<S>, Answer>>,
 }
 
-/// Changes of a diagram that are asked for and not done.
-#[derive(Debug, Default)]
-pub(super) struct Versions {
-    coming: Option<Coming>,
+/// Changes of a program that are asked for and not done.
+#[derive(Debug)]
+pub(super) struct Versions<S> {
+    prepare: Prepare<S>,
+    /// The language of the program.
+    own: Locale,
+    coming: Option<Coming<S>>,
     /// Changes that were asked for after it. The daemon has a limit for those that have no answer.
     waiting: VecDeque<Incoming>,
 }
 
-impl Versions {
+impl<S: Send + 'static> Versions<S> {
+    /// None is asked for yet.
+    pub(super) fn new(prepare: Prepare<S>, own: Locale) -> Self {
+        Self {
+            prepare,
+            own,
+            coming: None,
+            waiting: VecDeque::new(),
+        }
+    }
+
     /// Keeps a change until those before it are done; nothing is before it: it comes back.
     pub(super) fn keep(&mut self, change: Incoming) -> Option<Incoming> {
         if self.coming.is_none() {
@@ -62,20 +80,23 @@ impl Versions {
 
     /// Begins to prepare a version.
     pub(super) fn begin(&mut self, when_gone: WhenGone, path: PathBuf, locale: Locale) {
-        let (sender, project) = channel();
-        let file = path.clone();
-        let prepare = move || {
+        let (sender, version) = channel();
+        let (prepare, own, file) = (self.prepare, self.own, path.clone());
+        let here = sender.clone();
+        let work = move || {
             // The program may have ended meanwhile.
-            let _ = sender.send(live::prepared(&file, locale));
+            let _ = sender.send(prepare(&file, own, locale));
         };
         let thread = std::thread::Builder::new().name("version".to_owned());
-        // Without a thread nobody sends, which is seen where the version is taken.
-        let _ = thread.spawn(prepare);
+        if thread.spawn(work).is_err() {
+            // No thread can be had: then here, and now.
+            let _ = here.send(prepare(&path, own, locale));
+        }
         self.coming = Some(Coming {
             when_gone,
-            path,
+            name: live::name(&path),
             locale,
-            project,
+            version,
         });
     }
 
@@ -88,25 +109,31 @@ impl Versions {
     }
 
     /// The version that was being prepared, if it is ready.
-    pub(super) fn ready(&mut self) -> Option<Ready> {
+    pub(super) fn ready(&mut self) -> Option<Ready<S>> {
         let coming = self.coming.as_ref()?;
-        let project = match coming.project.try_recv() {
-            Ok(project) => project,
+        let version = match coming.version.try_recv() {
+            Ok(version) => version,
             Err(TryRecvError::Empty) => return None,
-            // No thread could be had, or it has failed: then here, and now.
-            Err(TryRecvError::Disconnected) => live::prepared(&coming.path, coming.locale),
+            // A version that ends its thread does not end the program that runs.
+            Err(TryRecvError::Disconnected) => {
+                let why = words::not_prepared();
+                Err(Answer::unchanged(
+                    &coming.name,
+                    why.in_locale(coming.locale),
+                ))
+            }
         };
         let Coming {
             when_gone,
-            path,
+            name,
             locale,
             ..
         } = self.coming.take()?;
         Some(Ready {
             when_gone,
-            name: live::name(&path),
+            name,
             locale,
-            project,
+            version,
         })
     }
 }
@@ -117,7 +144,7 @@ mod tests {
 
     #[test]
     fn changes_are_done_in_their_order() {
-        let mut versions = Versions::default();
+        let mut versions = Versions::new(live::prepared, Locale::English);
         let set = |text: &str| Incoming::Set(text.to_owned(), Locale::English);
         assert_eq!(versions.keep(set("n=1")), Some(set("n=1")));
         let folder = tempfile::tempdir().unwrap();
@@ -135,7 +162,7 @@ mod tests {
             }
         };
         assert_eq!(ready.name, "none.qrs");
-        let answer = ready.project.unwrap_err();
+        let answer = ready.version.unwrap_err();
         assert!(
             answer.text.starts_with("none.qrs is not changed: "),
             "{answer:?}"
@@ -143,6 +170,25 @@ mod tests {
         assert!(!answer.is_changed);
         assert_eq!(versions.next(), Some(set("n=2")));
         assert_eq!(versions.next(), None);
+        assert!(versions.ready().is_none());
+    }
+    #[test]
+    fn a_version_that_ends_its_thread_is_refused() {
+        let mut versions: Versions<()> =
+            Versions::new(|_, _, _| panic!("a fault of the checks"), Locale::English);
+        versions.begin(WhenGone::End, "fault.qrs".into(), Locale::English);
+        let ready = loop {
+            match versions.ready() {
+                Some(ready) => break ready,
+                None => std::thread::yield_now(),
+            }
+        };
+        let answer = ready.version.unwrap_err();
+        assert!(!answer.is_changed);
+        assert!(
+            answer.text.starts_with("fault.qrs is not changed: "),
+            "{answer:?}"
+        );
         assert!(versions.ready().is_none());
     }
 }

@@ -12,7 +12,7 @@ use lang_diagram::machine::view::Doing;
 use lang_diagram::program::Node;
 use lang_expr::Value;
 use lang_text::json::{self, Object};
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Severity};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::io;
@@ -180,9 +180,23 @@ impl Watch {
         }
     }
 
-    /// Something wrong with the program is told before it begins; false: it was already.
-    pub(super) fn note_at_load(&mut self, line: String) -> bool {
-        self.at_load.insert(line)
+    /// What is wrong with a program or a new version of it is told before that begins, but for what was told of the version
+    /// before.
+    pub(super) fn tell_warnings(
+        &mut self,
+        warnings: impl IntoIterator<Item = (Severity, String)>,
+        host: &Host,
+    ) {
+        let before = std::mem::take(&mut self.at_load);
+        for (severity, line) in warnings {
+            if !before.contains(&line) && !self.at_load.contains(&line) {
+                let severity = severity.words();
+                let severity = severity.in_locale(self.locale);
+                // What cannot be told is not told that it cannot be.
+                let _ = host.info(&format!("{severity}: {line}"));
+            }
+            self.at_load.insert(line);
+        }
     }
 
     /// Errors since the last time, which are told at once, but for faults that were told at load.

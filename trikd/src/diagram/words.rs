@@ -55,6 +55,14 @@ pub(super) fn other_language() -> Words {
     )
 }
 
+/// Why a version whose checks ended their thread does not replace what runs.
+pub(super) fn not_prepared() -> Words {
+    Words::new(
+        "a fault of trikd ended its check; please report it with this file",
+        "его проверка прервана ошибкой в самом trikd; сообщите о ней и приложите этот файл",
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,7 +11,7 @@ pub fn counting() -> Vec<u8> {
     counting_by("n = n + 1")
 }
 
-fn counting_by(body: &str) -> Vec<u8> {
+pub fn counting_by(body: &str) -> Vec<u8> {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let clear = sketch.block("Function", &[("Body", "n = 0")]);
@@ -257,18 +257,34 @@ fn errors_name_the_block_and_stay_with_the_diagram() {
 }
 
 #[test]
-fn who_asks_for_a_language_hears_it_and_others_hear_that_of_the_robot() {
+fn a_client_hears_the_language_that_it_asks_for_or_that_of_the_robot() {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let wrong = sketch.block("Function", &[("Body", "x = 1 / 0")]);
     let end = sketch.block("FinalNode", &[]);
     sketch.chain(&[start, wrong, end]);
-    let robot = robot(&["--language", "en"]);
-    let mut client = robot.client("control");
-    upload(&mut client, "wrong.qrs", &sketch.qrs().unwrap());
-    upload(&mut client, "count.qrs", &counting());
+    for (robots, asked) in [
+        (
+            "en",
+            [("", false), ("language:ru", true), ("language:en", false)],
+        ),
+        (
+            "ru",
+            [("", true), ("language:en", false), ("language:ru", true)],
+        ),
+    ] {
+        let robot = robot(&["--language", robots]);
+        let mut client = robot.client("control");
+        upload(&mut client, "wrong.qrs", &sketch.qrs().unwrap());
+        upload(&mut client, "count.qrs", &counting());
+        speaks(&mut client, asked);
+    }
+}
+
+/// What a client hears after each of these requests is in Russian, or is not.
+fn speaks(client: &mut Client, asked: [(&str, bool); 3]) {
     let is_russian = |text: &str| text.chars().any(|c| ('\u{430}'..='\u{44f}').contains(&c));
-    for (asks, is_wanted) in [("", false), ("language:ru", true), ("language:en", false)] {
+    for (asks, is_wanted) in asked {
         client.send(asks);
         let mut hear = |request: &str, answer: &str| {
             client.send(request);
@@ -444,10 +460,11 @@ fn what_is_wrong_changes_nothing_and_says_where() {
         told.contains("main: Function (300, 0): 'Expression', 1:"),
         "{told}"
     );
-    // Who has not asked for it sees what the program says, and nothing else.
+    // A client that has not asked sees what the program says, and nothing else.
     let mut other = robot.client("control");
-    other.send("version");
-    other.until("version: ");
+    other.sync();
+    // It may wait for longer than a client may be silent.
+    other.keep_alive();
     upload(&mut client, "count.qrs", &counting_by("n = 'text'"));
     client.send("patch:end:count.qrs");
     client.until("error: count.qrs is not changed: ");
@@ -481,8 +498,10 @@ fn what_is_wrong_changes_nothing_and_says_where() {
     let before = printed(&mut client);
     assert_eq!(printed(&mut client), before + 1);
     other.send("version");
-    while let Some(heard) = other.next().filter(|heard| !heard.starts_with("version: ")) {
+    let mut heard = other.next().expect("it is still connected");
+    while !heard.starts_with("version: ") {
         assert!(heard.starts_with("print: "), "{heard}");
+        heard = other.next().expect("it is still connected");
     }
     client.send("stop");
     client.until("info: count.qrs was stopped by a client");

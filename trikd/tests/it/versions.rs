@@ -1,8 +1,11 @@
-//! New versions of a diagram that take long to read and to check.
+//! New versions of programs of blocks that take long to read and to check, and what is strange about them.
 
-use crate::diagrams::{counting, printed, upload};
+use crate::diagrams::{counting, counting_by, printed, upload};
 use crate::rig::robot;
 use lang_diagram::sketch::Sketch;
+
+/// How something strange is told.
+const STRANGE: &str = "info: warning: ";
 
 /// A counter with a thread of many blocks beside it, which take a while to read and to check.
 fn counting_beside_many() -> Vec<u8> {
@@ -57,12 +60,12 @@ fn a_large_version_is_prepared_beside_the_program() {
 }
 
 /// A program that counts, beside blocks that make each version of it take a while.
-fn long_flow(step: u32) -> String {
+fn long_flow(step: u32, blocks: u32) -> String {
     let mut text = format!(
         "diagram main\n  tick: Loop(start_border = 0, end_border = 100000, time = 10)\n  \
          count: \"Text programming\"(IO0 = `n = I0 * {step}; print(\"n \" .. n); n`)\n  tick.OUT -> count.I0\n"
     );
-    for at in 0..1000 {
+    for at in 0..blocks {
         text += &format!(
             "  f{at}: \"Text programming\"(IO0 = `I0 + {at}`)\n  tick.CF_OUT -> f{at}.I0\n"
         );
@@ -74,12 +77,12 @@ fn long_flow(step: u32) -> String {
 fn many_versions_at_once_do_not_hold_what_runs() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
-    upload(&mut client, "long.flow", long_flow(0).as_bytes());
+    upload(&mut client, "long.flow", long_flow(0, 1000).as_bytes());
     client.send("run:long.flow");
     client.until("print: n 0");
     const VERSIONS: u32 = 8;
     for step in 1..=VERSIONS {
-        upload(&mut client, "long.flow", long_flow(step).as_bytes());
+        upload(&mut client, "long.flow", long_flow(step, 1000).as_bytes());
         client.send("patch:end:long.flow");
     }
     let (mut changes, mut held, mut was_change) = (0, 0, false);
@@ -94,4 +97,60 @@ fn many_versions_at_once_do_not_hold_what_runs() {
     // Several that take little time may come before one step.
     assert!(held < VERSIONS - 1, "nothing came between the versions");
     client.send("stop");
+}
+
+#[test]
+fn a_large_version_of_data_flow_is_prepared_beside_the_program() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "long.flow", long_flow(0, 1).as_bytes());
+    client.send("run:long.flow");
+    client.until("print: n 0");
+    upload(&mut client, "long.flow", long_flow(1, 3000).as_bytes());
+    client.sync();
+    client.send("patch:end:long.flow");
+    let mut rounds = 0;
+    loop {
+        let heard = client.next().expect("an answer");
+        if heard.starts_with("info: long.flow is changed: ") {
+            break;
+        }
+        let is_warning = heard.starts_with(STRANGE);
+        assert!(is_warning || heard.starts_with("print: n 0"), "{heard}");
+        rounds += u32::from(!is_warning);
+    }
+    assert!(rounds > 0, "it stood still meanwhile");
+    client.send("stop");
+    client.until("info: long.flow was stopped by a client");
+}
+
+#[test]
+fn what_is_strange_about_a_version_is_told_once() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    while printed(&mut client) < 2 {}
+    let mut told = |body: &str| {
+        upload(&mut client, "count.qrs", &counting_by(body));
+        client.send("patch:end:count.qrs");
+        let mut warnings = Vec::new();
+        loop {
+            let heard = client.next().expect("an answer");
+            if let Some(warning) = heard.strip_prefix(STRANGE) {
+                warnings.push(warning.to_owned());
+            } else if heard.starts_with("info: count.qrs is changed: ") {
+                return warnings;
+            }
+            assert!(!heard.starts_with("error: "), "{heard}");
+        }
+    };
+    let first = told("n = n + 99999999999");
+    let [one] = &first[..] else {
+        panic!("{first:?}");
+    };
+    assert!(one.contains("99999999999"), "{one}");
+    assert_eq!(told("n = n + 99999999999\n"), [""; 0]);
+    assert_eq!(told("n = n + 1"), [""; 0]);
+    assert_eq!(told("n = n + 99999999999"), first);
 }

@@ -12,6 +12,7 @@ use super::trace::Deaf;
 use super::{Env, Machine, words};
 use crate::check::check;
 use crate::limits;
+use crate::lower::lower;
 use crate::program::{Flow, Instance, Node, NodeId, Op, Program, Queue, Target};
 use crate::project::Project;
 use lang_diagram::brick::Brick;
@@ -82,15 +83,40 @@ impl Version {
     /// # Errors
     /// All mistakes, if there is an error among them.
     pub fn of(project: &Project) -> Result<Self, Refused> {
-        let checked = check(project);
-        if checked.has_errors() {
-            let is_error = |problem: &Problem| problem.severity == Severity::Error;
-            let errors = checked.problems.into_iter().filter(is_error).collect();
-            return Err(Refused::Mistakes(errors));
+        Self::mistakes(project)?;
+        Self::of_checked(project)
+    }
+
+    /// The version of a project that [`Version::mistakes`] has found good, which takes a small part of the time.
+    ///
+    /// # Errors
+    /// The project cannot be run at all.
+    pub fn of_checked(project: &Project) -> Result<Self, Refused> {
+        let lowered = lower(project);
+        match lowered.has_errors() {
+            true => Err(Refused::Mistakes(lowered.problems)),
+            false => Ok(Self {
+                program: Rc::new(lowered.program),
+            }),
         }
-        Ok(Self {
-            program: Rc::new(checked.program),
-        })
+    }
+
+    /// What is wrong with a project whatever runs; another thread may look for it. The answer are the warnings.
+    ///
+    /// # Errors
+    /// All mistakes, if there is an error among them.
+    pub fn mistakes(project: &Project) -> Result<Vec<Problem>, Refused> {
+        let checked = check(project);
+        let kept = match checked.has_failed {
+            true => Severity::Error,
+            false => Severity::Warning,
+        };
+        let mut problems = checked.problems;
+        problems.retain(|problem| problem.severity == kept);
+        match checked.has_failed {
+            true => Err(Refused::Mistakes(problems)),
+            false => Ok(problems),
+        }
     }
 }
 

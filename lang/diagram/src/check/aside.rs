@@ -131,16 +131,18 @@ pub(crate) fn fights(known: &Known<'_>, variable: &str, statement: &str) -> bool
             return usize::MAX;
         }
         let (mut texts, _) = taught(known.program, &flow, &mut names);
-        let is_wrong = |text: &mut Source| lang_expr::analyse(text, &mut names.clone()).is_err();
+        // All names are known by now, and a text teaches none.
+        let is_wrong = |text: &mut Source| lang_expr::analyse(text, &mut names).is_err();
         texts
             .values_mut()
             .map(is_wrong)
             .filter(|wrong| *wrong)
             .count()
     };
+    let here = wrong(statement);
     // Texts that fight among themselves leave no good answer, which is not the fault of this one.
-    let others = ["0", "''"].map(|text| wrong(&format!("{variable} = {text}")));
-    others.iter().any(|other| *other < wrong(statement))
+    let is_better = |text: &str| wrong(&format!("{variable} = {text}")) < here;
+    here > 0 && ["0", "''"].into_iter().any(is_better)
 }
 
 /// What is wrong with a name as one of a variable or a sensor of the program.

@@ -136,10 +136,14 @@ impl Brick for Noting<'_> {
         answer
     }
 
-    fn asks_again(&mut self, question: Question<'_>, why: &[Problem]) -> bool {
-        let asks = self.robot.asks_again(question, why);
-        self.note(Answered::Again(asks));
-        asks
+    fn may_ask_again(&mut self, question: Question<'_>) -> bool {
+        let may = self.robot.may_ask_again(question);
+        self.note(Answered::Again(may));
+        may
+    }
+
+    fn ask_again(&mut self, question: Question<'_>, why: &[Problem]) {
+        self.robot.ask_again(question, why);
     }
 }
 
@@ -286,14 +290,14 @@ impl Brick for Remembering<'_> {
         answer.unwrap_or(Answer::Waiting)
     }
 
-    fn asks_again(&mut self, _question: Question<'_>, _why: &[Problem]) -> bool {
-        let asks = self.next(|answered| {
-            if let Answered::Again(asks) = answered {
-                Some(*asks)
+    fn may_ask_again(&mut self, _question: Question<'_>) -> bool {
+        let may = self.next(|answered| {
+            if let Answered::Again(may) = answered {
+                Some(*may)
             } else {
                 None
             }
         });
-        asks.unwrap_or(false)
+        may.unwrap_or(false)
     }
 }

@@ -413,7 +413,7 @@ fn found(is_found: bool, number: Option<u32>) -> Result<Object, Refused> {
 }
 
 fn no_such_thread(name: &str, there: &BTreeSet<&str>) -> Refused {
-    let there = there.iter().take(limits::THREADS_NAMED_MAX);
+    let there = there.iter().take(limits::NAMES_LISTED_MAX);
     Refused::NoSuchThread(name.into(), there.map(|name| (*name).into()).collect())
 }
 

@@ -1,6 +1,6 @@
 //! Why a text is no order to a debugger.
 //!
-//! Owns what an order may lack. What a person is told of it is said by `words`.
+//! Owns the words with which orders begin, and what an order may lack. What a person is told of it is said by `words`.
 
 /// Why a text is no order.
 #[derive(Clone, Debug, Eq, PartialEq)]

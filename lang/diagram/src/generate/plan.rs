@@ -62,7 +62,7 @@ struct Planner<'a> {
     fresh: HashMap<(Node, usize), Rc<str>>,
 }
 
-/// Who wants to know the functions of a program.
+/// What the functions of a program are wanted for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum For {
     /// A person, who is shown every block.

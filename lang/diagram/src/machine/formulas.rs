@@ -6,6 +6,7 @@ use crate::program::{Program, Source as Index};
 use lang_expr::reserved::SENSORS;
 use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
 use lang_text::problem::Problem;
+use std::collections::HashMap;
 
 /// All expressions with their names and values.
 #[derive(Clone, Debug)]
@@ -40,10 +41,20 @@ impl Formulas {
     }
 
     /// The expressions of another version of the program with the names and values of this one.
-    pub fn patched(&self, program: &Program, compat: Compat) -> Self {
-        let Self { sources, .. } = Self::new(program, compat);
+    pub fn patched(&self, program: &Program) -> Self {
+        let known = self.sources.iter();
+        let known: HashMap<_, _> = known
+            .map(|source| ((source.text(), source.wanted()), source))
+            .collect();
+        let sources = program.sources.iter().map(|text| {
+            let wanted = text.wanted.wanted();
+            match known.get(&(&*text.text, wanted)) {
+                Some(source) => source.anew(),
+                None => Source::new(&text.text, wanted),
+            }
+        });
         Self {
-            sources,
+            sources: sources.collect(),
             names: self.names.clone(),
             store: self.store.clone(),
             scratch: Vec::new(),
@@ -53,21 +64,20 @@ impl Formulas {
     /// What is wrong with these texts once each has taught the names what it knows. The names themselves learn nothing.
     pub fn mistakes(&self, texts: &[Index]) -> Vec<(Index, Vec<Problem>)> {
         let mut names = self.names.clone();
-        let mut found = Vec::new();
-        for round in 0..2 {
-            for &index in texts {
-                let Some(source) = self.sources.get(index as usize) else {
-                    continue;
-                };
-                let mut source = Source::new(source.text(), source.wanted());
-                if let Err(problems) = lang_expr::analyse(&mut source, &mut names)
-                    && round > 0
-                {
-                    found.push((index, problems));
-                }
-            }
+        let read = texts.iter().filter_map(|&index| {
+            let source = self.sources.get(index as usize)?;
+            Some((index, source.anew()))
+        });
+        let mut read: Vec<_> = read.collect();
+        for (_, source) in &mut read {
+            // What is wrong by now may be right when all names are known.
+            let _ = lang_expr::analyse(source, &mut names);
         }
-        found
+        let looked = read.iter_mut().filter_map(|(index, source)| {
+            let problems = lang_expr::analyse(source, &mut names).err()?;
+            Some((*index, problems))
+        });
+        looked.collect()
     }
 
     /// What is known of names.

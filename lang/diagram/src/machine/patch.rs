@@ -127,23 +127,31 @@ impl Version {
         })
     }
 
-    /// What is wrong with a project whatever runs; another thread may look for it.
+    /// What is wrong with a project whatever runs; another thread may look for it. The answer are the warnings.
     ///
     /// # Errors
     /// All mistakes, if there is an error among them.
-    pub fn mistakes(project: &Project, world: World) -> Result<(), Refused> {
+    pub fn mistakes(project: &Project, world: World) -> Result<Vec<Problem>, Refused> {
         let Lowered { program, .. } =
             lower(project, world).map_err(|problem| Refused::Mistakes(vec![problem]))?;
-        let problems = check(project, world);
-        let errors: Vec<Problem> = problems
-            .into_iter()
-            .filter(|problem| problem.severity == Severity::Error)
-            .chain(program.refusal.clone())
-            .map(|problem| located(&program, problem))
-            .collect();
+        let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+        for problem in check(project, world) {
+            match problem.severity {
+                Severity::Error => errors.push(problem),
+                Severity::Warning => warnings.push(problem),
+                Severity::Note => {}
+            }
+        }
+        // In some worlds it is a warning that is not among them.
+        let refusal = program.refusal.clone();
+        errors.extend(refusal.filter(|refusal| !errors.contains(refusal)));
         match errors.is_empty() {
-            true => Ok(()),
-            false => Err(Refused::Mistakes(errors)),
+            true => Ok(warnings),
+            false => {
+                let errors = errors.into_iter();
+                let errors = errors.map(|problem| located(&program, problem));
+                Err(Refused::Mistakes(errors.collect()))
+            }
         }
     }
 }
@@ -254,7 +262,7 @@ impl Machine {
             )]));
         }
         let moves = Moves::of(&old, &new);
-        let formulas = self.formulas.patched(&new, self.options.compat);
+        let formulas = self.formulas.patched(&new);
         let mistakes = conflicts(&formulas, &old, &new);
         if !mistakes.is_empty() {
             return Err(Refused::Mistakes(mistakes));

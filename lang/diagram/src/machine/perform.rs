@@ -58,7 +58,8 @@ impl Machine {
         }
     }
 
-    /// Runs a statement that a block has put together; false after errors that were told.
+    /// Runs a statement that a block has put together; false after errors that were told. Their place is the block alone:
+    /// nobody has written the statement into it.
     pub(super) fn run_text(
         &mut self,
         node: Node,
@@ -66,45 +67,22 @@ impl Machine {
         statement: &str,
         env: &mut Env<'_>,
     ) -> bool {
-        let ran = self.ran_text(thread, statement, env);
-        ran.map_err(|problems| self.tell_all(node, "", problems, env))
-            .is_ok()
-    }
-
-    /// The same for a statement with what a person has said, which has no place in the block.
-    pub(super) fn run_spoken(
-        &mut self,
-        node: Node,
-        thread: u16,
-        statement: &str,
-        env: &mut Env<'_>,
-    ) -> bool {
-        let ran = self.ran_text(thread, statement, env);
-        let told = ran.map_err(|problems| {
-            for mut problem in problems {
-                problem.place = self.program.place(node);
-                self.report(problem, env);
-            }
-        });
-        told.is_ok()
-    }
-
-    fn ran_text(
-        &mut self,
-        thread: u16,
-        statement: &str,
-        env: &mut Env<'_>,
-    ) -> Result<(), Vec<Problem>> {
         let mut robot = Robot {
             sensors: &mut self.sensors,
             brick: env.brick,
             now: self.now,
         };
-        self.formulas.run_text(statement, &mut robot)?;
+        if let Err(problems) = self.formulas.run_text(statement, &mut robot) {
+            for mut problem in problems {
+                problem.place = self.program.place(node);
+                self.report(problem, env);
+            }
+            return false;
+        }
         let now = self.now;
         self.formulas
             .changed(|name, value| env.trace.changed(now, thread, name, value));
-        Ok(())
+        true
     }
 
     /// Errors of an expression of the program, at its block and property.

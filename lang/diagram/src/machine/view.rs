@@ -3,6 +3,7 @@
 //! Owns the view. Looking changes nothing: an expression is computed on copies, and reads no device.
 
 use super::clocks::Purpose;
+use super::formulas::Formulas;
 use super::threads::{State, Thread};
 use super::trace::Trace;
 use super::{Deferred, Env, Machine, words};
@@ -228,17 +229,31 @@ impl Machine {
         }
         let opening = format!("{variable} = ");
         let statement = format!("{opening}{text}");
+        match self.tried(&opening, &statement) {
+            (Ok(_), _) => {}
+            // The robot knows more: what it measures, or chance.
+            (Err(_), true) => return Vec::new(),
+            (Err(problems), false) => return problems,
+        }
+        match self.known(|known| aside::fights(known, variable, &statement)) {
+            true => vec![Problem::error(words::answer_does_not_fit(variable))],
+            false => Vec::new(),
+        }
+    }
+
+    /// The variables after a statement that is run without the robot, or what is wrong with it, at places after its opening;
+    /// and whether it asked for something that only the robot knows.
+    fn tried(&self, opening: &str, statement: &str) -> (Result<Formulas, Vec<Problem>>, bool) {
         let mut formulas = self.formulas.clone();
         let mut robot = Onlooker {
             machine: self,
             lacking: None,
         };
-        if let Err(problems) = formulas.run_text(&statement, &mut robot) {
-            return without(&opening, problems);
-        }
-        match self.known(|known| aside::fights(known, variable, &statement)) {
-            true => vec![Problem::error(words::answer_does_not_fit(variable))],
-            false => Vec::new(),
+        let ran = formulas.run_text(statement, &mut robot);
+        let lacks = robot.lacking.is_some();
+        match ran {
+            Ok(()) => (Ok(formulas), lacks),
+            Err(problems) => (Err(without(opening, problems)), lacks),
         }
     }
 
@@ -261,14 +276,8 @@ impl Machine {
         self.evaluate_aside(text)?;
         let opening = format!("{variable} = (");
         let statement = format!("{opening}{text})");
-        let mut formulas = self.formulas.clone();
-        let mut robot = Onlooker {
-            machine: self,
-            lacking: None,
-        };
-        formulas
-            .run_text(&statement, &mut robot)
-            .map_err(|problems| without(&opening, problems))?;
+        let (tried, _) = self.tried(&opening, &statement);
+        let formulas = tried?;
         let env = &mut Env { brick, trace };
         let now = self.now;
         self.formulas = formulas;

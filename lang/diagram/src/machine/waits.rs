@@ -289,20 +289,17 @@ impl Machine {
             Answer::Text(text) => (text, true),
             Answer::Cancelled => (String::new(), false),
         };
-        if is_answer {
+        if is_answer && env.brick.may_ask_again(question) {
             let wrong = self.wrong_answer(&assignment.variable, &text, cancel != NOWHERE);
-            if !wrong.is_empty() && env.brick.asks_again(question, &wrong) {
+            if !wrong.is_empty() {
+                env.brick.ask_again(question, &wrong);
                 return;
             }
         }
         self.drop_clock(node);
         if !text.is_empty() {
             let statement = format!("{} = {text}", assignment.variable);
-            let is_good = self.run_answer(node, &statement, env);
-            if !is_good {
-                self.fail_all_at(node, env);
-            }
-            if is_good {
+            if self.assign_for_waiting(node, &statement, env) {
                 self.lead(node, next);
             }
         } else if cancel != NOWHERE {
@@ -313,14 +310,6 @@ impl Machine {
             env.trace.trap(self.now, &problem);
             self.lead(node, node);
         }
-    }
-
-    /// Runs an answer for the thread that waits for it; false after an error, whose place is the block: nobody has written
-    /// the answer into it.
-    fn run_answer(&mut self, node: Node, statement: &str, env: &mut Env<'_>) -> bool {
-        let waiting = self.threads.waiting_at(node);
-        let slot = waiting.first().map_or(0, |handle| handle.slot);
-        self.run_spoken(node, slot, statement, env)
     }
 
     /// Whether anything answers on a port.
