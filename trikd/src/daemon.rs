@@ -33,8 +33,8 @@ use crate::server::video::Video;
 use crate::server::{self, Admission, Port};
 use crate::settings::{BoxKey, Service, Settings, StopKey};
 use crate::status::{self, Socket, Status};
+use crate::{diagram, limits, log};
 use crate::{heartbeat, keys, standstill};
-use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid, getppid};
 use page::seats::Seats;
 use recorder::kept::SaveReason;
@@ -349,6 +349,7 @@ impl Parts {
             scripts: self.settings.scripts.clone(),
             upload_bytes: usize::from(self.settings.upload_mib) << 20,
             config_version: self.settings.config_version.clone(),
+            locale: diagram::locale(&self.settings.language),
         }
     }
 

@@ -72,7 +72,7 @@ struct Current {
     web: Vec<oneshot::Sender<String>>,
     /// Orders to its debugger that it has not answered yet.
     orders: VecDeque<OrderId>,
-    /// Who has asked for changes that it has not answered yet, and of what.
+    /// Changes that it has not answered yet: the client that asked for each, and what is changed.
     changes: VecDeque<(u32, String)>,
     ended: Option<(Ended, Instant)>,
 }

@@ -142,12 +142,15 @@ impl Client {
     /// The person at the editor speaks the language of these arguments, if they name one: of a launch by `language`, of the
     /// greeting by `locale`, as `ru-RU`.
     pub fn hear_language(&mut self, request: &mut Request) {
+        let locale_of = |name: &str| Locale::named(name.split(['-', '_']).next()?);
         let named = request.text("language").or(request.text("locale"));
-        let short = named.and_then(|name| name.split(['-', '_']).next());
-        if let Some(locale) = short.and_then(Locale::named) {
+        if let Some(locale) = named.and_then(locale_of) {
             self.locale = locale;
         }
-        if request.command != "initialize" && request.arguments.is_object() {
+        // One that is none stays, and is refused with the other keys.
+        let given = request.arguments.get("language");
+        let is_none = given.is_some_and(|given| given.as_str().and_then(locale_of).is_none());
+        if request.command != "initialize" && request.arguments.is_object() && !is_none {
             request.arguments["language"] = self.locale.name().into();
         }
     }

@@ -347,7 +347,7 @@ impl<'a> Session<'a> {
                 }
                 self.client.pass(message);
                 if std::mem::take(&mut self.is_held) {
-                    self.in_program("_go_on()", Asked::GoOn);
+                    self.in_program(&format!("_go_on({})", self.stops), Asked::GoOn);
                 }
             }
             // The robot knows more of the end.

@@ -3,8 +3,10 @@
 //! Owns which question is open: model time stands still until it has an answer. Knows no terminal.
 
 use lang_diagram::brick::{Answer, Question};
+use lang_text::problem::{Locale, Problem};
 use sim::arena::Person;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// A question.
 #[derive(Clone, Debug, Default, Eq, PartialEq)]
@@ -14,9 +16,41 @@ pub(crate) struct Asked {
     pub prompt: String,
     /// What it proposes.
     pub default: String,
+    /// What was wrong with the last answer, in the language of the person; empty for the first one.
+    pub wrong: String,
+    /// Until when there can be an answer; None: for ever.
+    pub until: Option<Instant>,
 }
 
-/// Who is there to answer.
+impl Asked {
+    fn of(question: Question<'_>) -> Self {
+        Self {
+            variable: question.variable.to_owned(),
+            prompt: question.prompt.to_owned(),
+            default: question.default.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether this is the same question, whatever was answered before.
+    fn is_of(&self, other: &Self) -> bool {
+        let key = |asked: &Self| {
+            (
+                asked.variable.clone(),
+                asked.prompt.clone(),
+                asked.default.clone(),
+            )
+        };
+        key(self) == key(other)
+    }
+
+    /// Whether nobody waits for an answer any more.
+    pub fn is_over(&self) -> bool {
+        self.until.is_some_and(|until| Instant::now() >= until)
+    }
+}
+
+/// Whether somebody is there to answer.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub(crate) enum Listener {
     /// Nobody, from the beginning: a question has no answer, as in a run that is judged.
@@ -36,6 +70,10 @@ pub(crate) struct Asking(Arc<Mutex<Inner>>);
 struct Inner {
     listener: Listener,
     open: Option<Open>,
+    /// What the person has just answered.
+    answered: Option<Asked>,
+    /// In which reasons are told.
+    locale: Locale,
     /// The program is to be stopped first.
     is_put_off: bool,
     ticks: u64,
@@ -57,6 +95,11 @@ impl Asking {
     fn inner(&self) -> MutexGuard<'_, Inner> {
         // Each change of it is whole.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Reasons are told in this language.
+    pub(super) fn speak(&self, locale: Locale) {
+        self.inner().locale = locale;
     }
 
     /// Who answers from now on.
@@ -127,7 +170,7 @@ impl Inner {
     fn ask_person(&mut self, asked: Asked) -> Answer {
         let ticks = self.ticks;
         // One that is not asked any more is forgotten; another one that is comes first.
-        let is_old = |open: &Open| open.asked != asked && open.seen + 1 < ticks;
+        let is_old = |open: &Open| !open.asked.is_of(&asked) && open.seen + 1 < ticks;
         if self.open.as_ref().is_some_and(is_old) {
             self.open = None;
         }
@@ -137,13 +180,14 @@ impl Inner {
             is_told: false,
             seen: ticks,
         });
-        if open.asked != asked {
+        if !open.asked.is_of(&asked) {
             return Answer::Waiting;
         }
         open.seen = ticks;
         match open.answer.take() {
             Some(answer) => {
                 self.open = None;
+                self.answered = Some(asked);
                 Answer::Text(answer)
             }
             None => Answer::Waiting,
@@ -153,18 +197,38 @@ impl Inner {
 
 impl Person for Asking {
     fn ask(&mut self, question: Question<'_>) -> Answer {
-        let asked = Asked {
-            variable: question.variable.to_owned(),
-            prompt: question.prompt.to_owned(),
-            default: question.default.to_owned(),
-        };
-        self.inner().ask(asked)
+        self.inner().ask(Asked::of(question))
+    }
+
+    fn may_ask_again(&mut self, question: Question<'_>) -> bool {
+        let inner = self.inner();
+        let answered = inner.answered.as_ref();
+        inner.listener == Listener::Person
+            && answered.is_some_and(|answered| answered.is_of(&Asked::of(question)))
+    }
+
+    fn ask_again(&mut self, question: Question<'_>, why: &[Problem]) {
+        let mut inner = self.inner();
+        let said = why.iter().map(|one| one.said(inner.locale));
+        let wrong = said.collect::<Vec<_>>().join("\n");
+        let seen = inner.ticks;
+        inner.answered = None;
+        inner.open = Some(Open {
+            asked: Asked {
+                wrong,
+                ..Asked::of(question)
+            },
+            answer: None,
+            is_told: false,
+            seen,
+        });
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lang_text::problem::Words;
 
     fn ask(asking: &mut Asking, variable: &str) -> Answer {
         asking.tick();
@@ -205,6 +269,28 @@ mod tests {
         assert_eq!(ask(&mut asking, "n"), Answer::Waiting);
         assert_eq!(asking.news().expect("a question").variable, "n");
         assert_eq!(asking.missed(), None);
+    }
+
+    #[test]
+    fn a_wrong_answer_is_asked_for_once_more_with_the_reason() {
+        let mut asking = Asking::default();
+        let question = Question {
+            variable: "n",
+            prompt: "How many?",
+            default: "1",
+        };
+        assert!(!asking.may_ask_again(question), "nothing was answered");
+        asking.attend(Listener::Person);
+        assert_eq!(ask(&mut asking, "n"), Answer::Waiting);
+        asking.answer("x");
+        assert_eq!(ask(&mut asking, "n"), text("x"));
+        assert!(asking.may_ask_again(question));
+        asking.ask_again(question, &[Problem::error(Words::new("no x", "x"))]);
+        let told = asking.news().expect("the question");
+        assert_eq!((told.variable.as_str(), told.wrong.as_str()), ("n", "no x"));
+        assert_eq!(ask(&mut asking, "n"), Answer::Waiting);
+        asking.answer("2");
+        assert_eq!(ask(&mut asking, "n"), text("2"));
     }
 
     #[test]

@@ -52,6 +52,7 @@ impl<'a> Stage<'a> {
     /// Stopped before the first block.
     fn new(task: &Task, program: Debugged, settings: &'a Settings, world: World) -> Self {
         let asking = Asking::default();
+        asking.speak(settings.locale);
         let mut trial = Trial::new(task, &program, settings);
         trial.set_person(Box::new(asking.clone()));
         Self {

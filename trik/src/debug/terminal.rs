@@ -14,7 +14,7 @@ use crate::diagrams::flow;
 use crate::diagrams::save::must;
 use crate::error::Error;
 use crate::limits;
-use crate::remote::person::question_of;
+use crate::remote::person::{question_of, with_reason};
 use crate::terminal::harmless;
 use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
@@ -272,6 +272,10 @@ impl<'a> Terminal<'a> {
 
     /// Passes the next line on to the program, if it asks.
     fn answer(&mut self) -> Result<(), Error> {
+        // What is typed after the end of the time is an order at the next stop.
+        if self.asked.as_ref().is_some_and(Asked::is_over) {
+            self.asked = None;
+        }
         let Some(asked) = &self.asked else {
             return Ok(());
         };
@@ -547,7 +551,8 @@ impl<'a> Terminal<'a> {
 
 /// A question, with a blank behind it for the answer.
 fn question(asked: &Asked) -> String {
-    question_of(&asked.variable, &asked.prompt, &asked.default)
+    let shown = question_of(&asked.variable, &asked.prompt, &asked.default);
+    with_reason(&asked.wrong, shown)
 }
 
 /// Lines of others, for a terminal.

@@ -331,10 +331,13 @@ impl Debugged {
             let text = told.get(name).and_then(Value::as_str);
             text.unwrap_or_default().to_owned()
         };
+        let seconds = told.get("seconds").and_then(Value::as_u64);
         let asked = Asked {
             variable: text("variable"),
             prompt: text("question"),
             default: text("default"),
+            wrong: text("wrong"),
+            until: seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds)),
         };
         let number = told.get("number").and_then(Value::as_u64);
         if let Some(number) = number {

@@ -12,7 +12,7 @@ use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
 use super::watch::look;
 use crate::debug::report::Report;
-use crate::debug::stops;
+use crate::debug::stops::{self, words as stop_words};
 use crate::debug::target::words::told;
 use crate::error::Error;
 use crate::language;
@@ -250,7 +250,7 @@ fn debugger(link: &mut Link, status: &str, locale: Locale) -> Vec<String> {
     let held = told.map(|told| told.held.join(", "));
     let held = held.filter(|names| !names.is_empty());
     let mut lines: Vec<_> = stopped.into_iter().collect();
-    lines.extend(held.map(|names| words::held(&names, locale)));
+    lines.extend(held.map(|names| stop_words::held(&names).in_locale(locale).to_owned()));
     let control = control.filter(|holder| !status.contains(&news::debugs(holder)));
     lines.extend(control.map(|holder| words::debugger(&holder, locale)));
     lines

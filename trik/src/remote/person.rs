@@ -36,11 +36,7 @@ impl Person {
         };
         let default = text("default");
         let shown = question_of(&text("variable"), &text("question"), &default);
-        // What was wrong with the last answer to the same question.
-        let shown = match text("wrong").as_str() {
-            "" => shown,
-            wrong => format!("{}\n{shown}", harmless(wrong).trim_end()),
-        };
+        let shown = with_reason(&text("wrong"), shown);
         let mut err = io::stderr().lock();
         let _ = err.write_all(shown.as_bytes()).and_then(|()| err.flush());
         self.open = Some(Open { number, default });
@@ -59,6 +55,14 @@ impl Person {
         };
         self.open = None;
         Some(request.into_bytes())
+    }
+}
+
+/// A question after what was wrong with the last answer to it, if anything was.
+pub(crate) fn with_reason(wrong: &str, shown: String) -> String {
+    match wrong {
+        "" => shown,
+        wrong => format!("{}\n{shown}", harmless(wrong).trim_end()),
     }
 }
 

@@ -285,7 +285,7 @@ fn finish(
                     standard(format!("{}\n", harmless(text)).as_bytes())?;
                 }
                 Event::Said(Channel::Message, text) => say(&harmless(&text)),
-                // Who has run it is asked.
+                // The person who has started it is asked.
                 Event::Asked(_) => {}
                 Event::Over(why) => {
                     say(&harmless(&words::told(&why, at.language)));

@@ -55,7 +55,37 @@ pub(crate) enum BadOrder {
     /// The first word is unknown.
     Word(String),
     /// What belongs after it is missing or has another form.
-    Argument(&'static str),
+    Argument(Wanted),
+}
+
+/// An order whose form was not met.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Wanted {
+    Step,
+    Speed,
+    Seek,
+    Loop,
+    /// A word and at most one number.
+    Short,
+    /// A word and nothing after it.
+    WordAlone,
+    /// A line that can be shown.
+    Printable,
+}
+
+impl Wanted {
+    /// Its form, in English.
+    fn form(self) -> &'static str {
+        match self {
+            Self::Step => "step NUMBER, 1 to 1000000 events",
+            Self::Speed => "speed NUMBER, 0.01 to 1000 times the real time",
+            Self::Seek => "seek TIME: seconds, MINUTES:SECONDS, or +SECONDS and -SECONDS from here",
+            Self::Loop => "loop on or loop off",
+            Self::Short => "one word and at most one number after it",
+            Self::WordAlone => "nothing after this word",
+            Self::Printable => "one printable line",
+        }
+    }
 }
 
 impl fmt::Display for BadOrder {
@@ -65,15 +95,10 @@ impl fmt::Display for BadOrder {
                 f,
                 "unknown word '{word}': pause, go, step [NUMBER], speed NUMBER, seek TIME, loop on, loop off"
             ),
-            Self::Argument(wanted) => write!(f, "expected {wanted}"),
+            Self::Argument(wanted) => write!(f, "expected {}", wanted.form()),
         }
     }
 }
-
-const STEP: &str = "step NUMBER, 1 to 1000000 events";
-const SPEED: &str = "speed NUMBER, 0.01 to 1000 times the real time";
-const SEEK: &str = "seek TIME: seconds, MINUTES:SECONDS, or +SECONDS and -SECONDS from here";
-const LOOP: &str = "loop on or loop off";
 
 impl Order {
     /// One line.
@@ -82,26 +107,26 @@ impl Order {
         let (first, second) = (words.next().unwrap_or_default(), words.next());
         let bad = |wanted| Err(BadOrder::Argument(wanted));
         if words.next().is_some() {
-            return bad("one word and at most one number after it");
+            return bad(Wanted::Short);
         }
         match (first, second) {
             ("pause", None) => Ok(Self::Pause),
             ("go", None) => Ok(Self::Go),
-            ("pause" | "go", Some(_)) => bad("nothing after this word"),
+            ("pause" | "go", Some(_)) => bad(Wanted::WordAlone),
             ("step", None) => Ok(Self::Step(1)),
             ("step", Some(count)) => match count.parse() {
                 Ok(count @ 1..=1_000_000) => Ok(Self::Step(count)),
-                _ => bad(STEP),
+                _ => bad(Wanted::Step),
             },
             ("speed", speed) => speed
                 .and_then(speed_of)
-                .map_or(bad(SPEED), |it| Ok(Self::Speed(it))),
+                .map_or(bad(Wanted::Speed), |it| Ok(Self::Speed(it))),
             ("seek", time) => time
                 .and_then(seek)
-                .map_or(bad(SEEK), |it| Ok(Self::Seek(it))),
+                .map_or(bad(Wanted::Seek), |it| Ok(Self::Seek(it))),
             ("loop", Some("on")) => Ok(Self::Loop(true)),
             ("loop", Some("off")) => Ok(Self::Loop(false)),
-            ("loop", _) => bad(LOOP),
+            ("loop", _) => bad(Wanted::Loop),
             (word, _) => Err(BadOrder::Word(word.chars().take(40).collect())),
         }
     }

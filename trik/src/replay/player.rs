@@ -5,7 +5,7 @@
 //! the event, and is told the newest value again when the recording is turned. Knows no file format: see `recording`.
 
 use super::clock::Clock;
-use super::order::{BadOrder, Order};
+use super::order::{BadOrder, Order, Wanted};
 use super::outputs::Output;
 use super::peer::{Peer, Wish, wish};
 use super::recording::{Event, Reading, Recording};
@@ -425,7 +425,7 @@ impl Scene {
             }
         }
         if self.control.take_left_out() > 0 {
-            self.complain(Some(&BadOrder::Argument("one printable line")));
+            self.complain(Some(&BadOrder::Argument(Wanted::Printable)));
         }
         let orders = std::mem::take(&mut lock(&self.shared).orders);
         for order in orders {

@@ -2,7 +2,7 @@
 //!
 //! Owns the lines; pure.
 
-use super::order::{BadOrder, KEYS};
+use super::order::{BadOrder, KEYS, Wanted};
 use super::outputs::Difference;
 use super::player::State;
 use super::recording::Channel;
@@ -24,9 +24,22 @@ pub(super) fn bad_order(why: &BadOrder) -> Words {
         BadOrder::Word(word) => format!(
             "неизвестное слово '{word}': pause, go, step [NUMBER], speed NUMBER, seek TIME, loop on, loop off"
         ),
-        BadOrder::Argument(wanted) => format!("ожидается {wanted}"),
+        BadOrder::Argument(wanted) => format!("ожидается {}", form(*wanted)),
     };
     Words::new(why.to_string(), russian)
+}
+
+/// The form of an order.
+fn form(wanted: Wanted) -> &'static str {
+    match wanted {
+        Wanted::Step => "step NUMBER, от 1 до 1000000 событий",
+        Wanted::Speed => "speed NUMBER, от 0.01 до 1000 раз быстрее времени",
+        Wanted::Seek => "seek TIME: секунды, МИНУТЫ:СЕКУНДЫ или +СЕКУНДЫ и -СЕКУНДЫ от этого места",
+        Wanted::Loop => "loop on или loop off",
+        Wanted::Short => "одно слово и не больше одного числа после него",
+        Wanted::WordAlone => "только это слово, без продолжения",
+        Wanted::Printable => "одна строка из печатных символов",
+    }
 }
 
 /// Cells of the bar.

@@ -230,10 +230,12 @@ fn a_stop_is_for_everybody_and_an_end_of_any_part_brings_to_rest() {
     // The bridge dies.
     broker.says("set/motors/M3", "40", &[]);
     eventually("a motor that runs", || power(&robot) == 40.0);
+    let ends = || heard.said().matches("life offline").count();
+    let before = ends();
     processes::signal(bridge.pid(), Signal::SIGKILL);
     bridge.code();
     comes_to_rest(&robot, "rest after the death of the bridge");
-    heard.says("life offline");
+    eventually("the will of the bridge", || ends() > before);
     // The broker dies.
     let bridge = broker.bridge(home, &["--control", "--deadman", "5000"]);
     bridge.says(": connected");

@@ -78,7 +78,7 @@ mod tests {
         let kills = |count| Kills(count);
         assert!(kills(Some(3)).are_more_than(kills(Some(2))));
         assert!(!kills(Some(2)).are_more_than(kills(Some(2))));
-        // Who is moved to another group is counted elsewhere.
+        // A process that is moved to another group is counted elsewhere.
         assert!(!kills(Some(1)).are_more_than(kills(Some(2))));
         assert!(!kills(Some(2)).are_more_than(kills(None)));
         assert!(!kills(None).are_more_than(kills(Some(2))));

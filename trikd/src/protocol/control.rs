@@ -81,7 +81,7 @@ pub enum Malformed {
 }
 
 /// Words of requests that the original robots do not have, and how these are written.
-const FORMS: [(&str, &str); 11] = [
+const FORMS: [(&str, &str); 12] = [
     ("patch", "patch:end:NAME or patch:refuse:NAME"),
     ("set", "set:NAME=EXPRESSION"),
     ("watch", "watch, with nothing behind it"),
@@ -90,8 +90,12 @@ const FORMS: [(&str, &str); 11] = [
     ("noquestions", "noquestions, with nothing behind it"),
     ("answer", "answer:NUMBER:TEXT or answer:NUMBER"),
     ("debug", "debug:NUMBER ORDER"),
+    ("language", "language:en or language:ru"),
     ("status", "status, with nothing behind it"),
-    ("stream", "stream:PATTERN,PATTERN;hz=NUMBER"),
+    (
+        "stream",
+        "stream:PATTERN,PATTERN;hz=NUMBER or stream:PATTERN,PATTERN;raw",
+    ),
     ("box", "box, with nothing behind it"),
 ];
 
@@ -327,7 +331,8 @@ mod tests {
             let frame = format!("language:{}", locale.name());
             assert_eq!(Request::parse(frame.as_bytes()), Request::Language(locale));
         }
-        assert_eq!(Request::parse(b"language:ru_RU"), Request::Unknown);
+        let form = Malformed::Form("language:en or language:ru");
+        assert_eq!(Request::parse(b"language:ru_RU"), Request::Malformed(form));
         for (frame, tag, order) in [
             (
                 &b"debug:7 break {b}\nif n > 3"[..],

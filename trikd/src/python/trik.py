@@ -1543,7 +1543,7 @@ _told_stop = ''
 
 
 def _tell_stop(is_stopped=True):
-    """Tells where a debugger has stopped the program, for who asks the robot; the thread that began it comes first."""
+    """Tells the robot where a debugger has stopped the program, or that it goes on; the thread that began it comes first."""
     global _told_stop
     told = ''
     if is_stopped:
@@ -1557,8 +1557,8 @@ def _tell_stop(is_stopped=True):
                 told = '%d %s' % (frame.f_lineno, os.path.basename(frame.f_code.co_filename))
                 break
     if told != _told_stop and _channel:
-        _told_stop = told
         _channel.send('stopped', told)
+        _told_stop = told
 
 
 def _hold(stop):
@@ -1567,17 +1567,19 @@ def _hold(stop):
     True: all do. From here on they stay so: what threads tell them counts when they go on. Stops have numbers from 1 on.
     """
     global _is_held, _stop_held
-    _tell_stop()
     # Nobody waits long for a thread whose motor does not answer: the others are to rest.
     is_closed = _gate.acquire(timeout=0.5)
     try:
         if stop <= _stop_over:
             return True
         _is_held, _stop_held = True, max(stop, _stop_held)
-        return all([_let_rest('%s/%s/' % (group, port)) for group in ('motors', 'servos') for port in _ports(group)]) and is_closed
+        do_rest = all([_let_rest('%s/%s/' % (group, port)) for group in ('motors', 'servos') for port in _ports(group)]) and is_closed
     finally:
         if is_closed:
             _gate.release()
+    # After the motors: the robot may be slow to hear.
+    _tell_stop()
+    return do_rest
 
 
 def _let_rest(place):

@@ -16,6 +16,7 @@ use crate::protocol::control::Request;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
 use crate::{limits, log, panics, scripts};
+use lang_text::problem::Locale;
 use page::seats::Full;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -42,6 +43,8 @@ pub struct Control {
     pub upload_bytes: usize,
     /// The model of the controller.
     pub config_version: String,
+    /// The language of the robot.
+    pub locale: Locale,
     /// What has happened, and what happens.
     pub recordings: Rc<Recordings>,
     /// What the battery has.
@@ -53,7 +56,7 @@ struct Session {
     control: Rc<Control>,
     client: Rc<Client>,
     sending: Sending,
-    /// The language that it has asked for.
+    /// The language that it has asked for; see [`Session::locale`].
     heard: Heard,
     /// Why it has no place: then it may only stop.
     full: Option<Full>,
@@ -78,10 +81,14 @@ impl Session {
         self.client.outbox.send(format!("error: {text}").as_bytes());
     }
 
-    /// Why a program is not kept or not run, in the language that was asked for.
+    /// The language of what this client alone is told: the one that it has asked for, or else that of the robot.
+    fn locale(&self) -> Locale {
+        self.heard.unwrap_or(self.control.locale)
+    }
+
+    /// Why a program is not kept or not run.
     fn refuse(&self, why: &scripts::Refusal) {
-        let words = why.words();
-        self.error(words.in_locale(self.heard.unwrap_or_default()));
+        self.error(why.words().in_locale(self.locale()));
     }
 
     /// Whether this computer may do more than look.

@@ -24,7 +24,7 @@ pub(crate) fn ends_by_quit() -> Words {
 pub(crate) fn nobody_answers(what: &str) -> Words {
     Words::new(
         format!("{what} is asked for, and nobody is there to answer: --inputs FILE has answers"),
-        format!("запрошено значение {what}, а ответить некому: ответы бывают в --inputs FILE"),
+        format!("запрошено значение {what}, а ответить некому: ответы можно дать в --inputs FILE"),
     )
 }
 

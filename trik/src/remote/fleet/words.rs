@@ -39,7 +39,7 @@ fn russian(line: &str) -> Option<String> {
                 .replace("median", "медиана")
                 .replace("most", "наибольшее");
             Some(format!(
-                "от остановки до покоя, последних раз {count}: {}",
+                "от остановки до покоя (остановок: {count}): {}",
                 times.replace(" us", " мкс")
             ))
         }
@@ -61,13 +61,7 @@ fn russian(line: &str) -> Option<String> {
     }
 }
 
-/// Threads that are held alone.
-pub(super) fn held(names: &str, locale: Locale) -> String {
-    let words = Words::new(format!("held {names}"), format!("удержаны {names}"));
-    words.in_locale(locale).to_owned()
-}
-
-/// Who is in control of a debugger, as a line of a status.
+/// The client that controls a debugger, as a line of a status.
 pub(super) fn debugger(who: &str, locale: Locale) -> String {
     let words = Words::new(
         format!("debugger {}", news::in_control(who)),
@@ -80,7 +74,7 @@ pub(super) fn debugger(who: &str, locale: Locale) -> String {
 pub(super) fn not_all(failed: usize, all: usize) -> Words {
     Words::new(
         format!("{failed} of {all} robots have not got everything"),
-        format!("не всё получили роботов: {failed} из {all}"),
+        format!("роботов, получивших не всё: {failed} из {all}"),
     )
 }
 
@@ -147,7 +141,14 @@ mod tests {
             ),
             (
                 "rest of the last 2 ends: median 3 us, p99 4 us, most 5 us",
-                "от остановки до покоя, последних раз 2: медиана 3 мкс, p99 4 мкс, наибольшее 5 мкс",
+                "от остановки до покоя (остановок: 2): медиана 3 мкс, p99 4 мкс, наибольшее 5 мкс",
+            ),
+            ("battery 11.87 V, 3 s ago", "батарея 11.87 В, 3 с назад"),
+            ("battery 11.87 V", "батарея 11.87 В"),
+            ("control 10.0.0.1:5", "управляет 10.0.0.1:5"),
+            (
+                "debugger 10.0.0.1:5 is in control",
+                "отладчиком управляет 10.0.0.1:5",
             ),
             ("", ""),
             ("program", "program"),

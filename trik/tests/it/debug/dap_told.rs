@@ -113,6 +113,7 @@ fn keys_that_are_misspelt_or_hold_something_else_are_refused() {
         ("speed", json!("x"), "\"speed\" is \"x\", and a number"),
         ("stopOnEntyr", json!(true), "did you mean 'stopOnEntry'?"),
         ("program", json!(5), "\"program\" is 5, and a text belongs"),
+        ("language", json!("xx"), "\"language\" is \"xx\""),
     ] {
         let mut arguments = json!({ "program": count });
         arguments[more] = value;

@@ -209,7 +209,7 @@ fn all_threads_stop_and_go_on_when_it_is_said() {
 /// A thread that ends at once, and a motor that turns at line 8.
 const SHORT: &str = "\
 import threading
-short = threading.Thread(target=script.wait, args=(300,))
+short = threading.Thread(target=script.wait, args=(3000,))
 short.start()
 script.wait(100)
 short.join()

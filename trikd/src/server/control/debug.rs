@@ -121,8 +121,8 @@ impl Session {
             if why.blame() != Blame::Client {
                 log::report(&why);
             }
-            let locale = self.heard.unwrap_or_default();
-            self.client.not_done(Some(tag), &why.in_locale(locale));
+            let why = why.in_locale(self.locale());
+            self.client.not_done(Some(tag), &why);
         }
     }
 
