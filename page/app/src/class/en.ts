@@ -3,7 +3,8 @@
 import type { Mark, StopSum, Sum } from './sum';
 
 export const en = {
-  stopUnsent: 'The last stop was not sent: the page was not connected to its server. Stop again, or stop the robots themselves.',
+  stopUnsent:
+    'The last stop was not sent: the page was not connected to its server. Stop again, or stop the robots themselves.',
   title: (name: string) => (name ? `${name} - TRIK class` : 'TRIK class'),
   stopAll: 'Stop all',
   stopHint: 'Everything on all robots to rest, their programs to their end (space bar)',
