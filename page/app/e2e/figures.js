@@ -195,10 +195,13 @@ async function viewers() {
 /** Bytes of the page's own objects, after all that nobody holds has been thrown away. */
 async function heap(page) {
   const session = await page.context().newCDPSession(page);
+  await session.send('Performance.enable');
   await session.send('HeapProfiler.collectGarbage');
   const { metrics } = await session.send('Performance.getMetrics');
   await session.detach();
-  return metrics.find(({ name }) => name === 'JSHeapUsedSize')?.value ?? 0;
+  const used = metrics.find(({ name }) => name === 'JSHeapUsedSize')?.value;
+  if (!used) throw new Error('the browser does not say what its heap has');
+  return used;
 }
 
 async function hour(minutes) {
@@ -207,8 +210,6 @@ async function hour(minutes) {
   try {
     const page = await eyes.open(`${robot.url}#instruments`);
     await page.getByRole('article', { name: NODE, exact: true }).waitFor();
-    const session = await page.context().newCDPSession(page);
-    await session.send('Performance.enable');
     const sizes = [];
     const steps = 12;
     for (let step = 0; step <= steps; step++) {
