@@ -70,7 +70,7 @@ impl Part for Control {
         }
         for words in self.world.lines() {
             let name = format!("{WORLD}.error");
-            // Who cannot be told has lost the folder of the board.
+            // If this cannot be told, the folder of the board is lost.
             match shared.machine().order(&words) {
                 Ok(()) => drop(std::fs::remove_file(self.root.join(name))),
                 Err(reason) => drop(appear(&self.root, &name, &reason.to_string())),

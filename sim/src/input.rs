@@ -242,7 +242,7 @@ impl Part for Keys {
         }
         let name = format!("{CONTROL}.error");
         match complaint {
-            // Who cannot be told has lost the folder of the board.
+            // If this cannot be told, the folder of the board is lost.
             Some(reason) => drop(appear(&self.root, &name, &reason.to_string())),
             None if good > 0 => drop(std::fs::remove_file(self.root.join(name))),
             None => {}

@@ -41,7 +41,7 @@ use live::{Live, Replays};
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
-pub(crate) use staged::{Ready, Staged, Start, staged};
+pub(crate) use staged::{NO_BLOCKS, Ready, Staged, Start, staged};
 use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};

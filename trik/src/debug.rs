@@ -15,7 +15,7 @@ pub(crate) mod target;
 mod terminal;
 mod words;
 
-use crate::check::{CheckArgs, Ready, Staged, Start, model_seconds, staged};
+use crate::check::{CheckArgs, NO_BLOCKS, Ready, Staged, Start, model_seconds, staged};
 use crate::error::Error;
 use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
@@ -142,6 +142,11 @@ pub(crate) fn run(args: &DebugArgs) -> Result<u8, Refusal> {
 
 /// A person debugs a diagram on a robot.
 fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusal> {
+    let ending = args.file.extension().and_then(|ending| ending.to_str());
+    if let Some("py" | "js") = ending {
+        let why = format!("{}: {NO_BLOCKS}", args.file.display());
+        return Err(Refusal::new(why));
+    }
     let diagram = args.world.diagram.as_deref();
     let listing = listing_of(&args.file, diagram, args.world.language)?;
     let unreachable = |error: Error| Refusal {

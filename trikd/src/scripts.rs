@@ -202,7 +202,7 @@ pub fn store(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, Refu
     let shown = || String::from_utf8_lossy(name).into_owned();
     let fails = |error: io::Error| Refusal::Disk(shown(), error.into());
     let parent = path.parent().unwrap_or(folder);
-    let Some(place) = enter(folder, parent).map_err(fails)? else {
+    let Some(place) = enter(folder, parent, Missing::Made).map_err(fails)? else {
         return Err(Refusal::LinkedFolder(shown()));
     };
     let last = inside(&place).join(path.file_name().unwrap_or_default());
@@ -219,21 +219,33 @@ fn inside(place: &File) -> PathBuf {
     Path::new("/proc/self/fd").join(place.as_raw_fd().to_string())
 }
 
-/// Opens a folder below another one step by step, and makes what is missing. None: a step is a link. Programs may
-/// write here, so a step that is seen to be a folder could be a link a moment later; one that is open cannot.
-fn enter(folder: &Path, parent: &Path) -> io::Result<Option<File>> {
-    let make = |path: &Path| match DirBuilder::new().mode(0o755).create(path) {
-        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
-        _ => Ok(()),
+/// What is done about a folder on the way that is not there.
+#[derive(Clone, Copy)]
+enum Missing {
+    /// It is made.
+    Made,
+    /// That is an error.
+    Refused,
+}
+
+/// Opens a folder below another one step by step. None: a step is a link. Programs may write here, so a step that is seen to
+/// be a folder could be a link a moment later; one that is open cannot.
+fn enter(folder: &Path, parent: &Path, missing: Missing) -> io::Result<Option<File>> {
+    let make = |path: &Path, with_parents| match missing {
+        Missing::Refused => Ok(()),
+        Missing::Made => {
+            let mut builder = DirBuilder::new();
+            match builder.recursive(with_parents).mode(0o755).create(path) {
+                Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
+                _ => Ok(()),
+            }
+        }
     };
-    DirBuilder::new()
-        .recursive(true)
-        .mode(0o755)
-        .create(folder)?;
+    make(folder, true)?;
     let mut place = File::open(folder)?;
     for part in parent.strip_prefix(folder).unwrap_or(Path::new("")) {
         let next = inside(&place).join(part);
-        make(&next)?;
+        make(&next, false)?;
         let opened = OpenOptions::new()
             .read(true)
             .custom_flags(libc::O_NOFOLLOW | libc::O_DIRECTORY)
@@ -285,7 +297,7 @@ pub fn open(folder: &Path, path: &Path) -> io::Result<Option<File>> {
     else {
         return Ok(None);
     };
-    let Some(place) = enter(folder, parent)? else {
+    let Some(place) = enter(folder, parent, Missing::Refused)? else {
         return Ok(None);
     };
     // A pipe would be waited for.

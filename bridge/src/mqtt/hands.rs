@@ -119,7 +119,7 @@ impl Hands {
         match &letter.order {
             Order::Stop => self.stop(),
             Order::Run(file) => self.robot.run(file).map_err(Undone::Robot),
-            // One who sent it may have gone since.
+            // The client that sent it may have gone since.
             Order::Set(..) | Order::Alive if letter.at.elapsed() >= self.deadman => {
                 Err(Undone::Untaken(Untaken::Late))
             }
@@ -132,7 +132,7 @@ impl Hands {
         }
     }
 
-    /// Everything comes to rest, and the program ends. One who goes on to drive is refused until it has been silent: a stop
+    /// Everything comes to rest, and the program ends. A client that goes on to drive is refused until it has been silent: a stop
     /// would last no longer than the pause between two commands.
     fn stop(&mut self) -> Result<(), Undone> {
         let until = Instant::now() + self.deadman;

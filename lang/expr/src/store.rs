@@ -86,7 +86,7 @@ impl Store {
             return;
         }
         if self.written.len() == REMEMBERED {
-            // Who does not look does not mind.
+            // Where nobody looks it does not matter.
             self.written.clear();
         }
         self.written.push(slot);

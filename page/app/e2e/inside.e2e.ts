@@ -72,7 +72,7 @@ test('bytes and values of a node are seen, and a number of its filter is turned 
   expect(await undo.isDisabled()).toBe(true);
   // What was chosen stays, however often the node is told anew.
   expect(await page.getByLabel('Read as, raw').inputValue()).toBe('>u16');
-  // Who only looks sees it too, and turns nothing.
+  // A viewer sees it too, and turns nothing.
   const other = await there.look.open(`${there.robot.url}#configuration`, { locale: 'ru-RU' });
   await other
     .getByText(

@@ -38,6 +38,9 @@ pub(crate) struct Staged {
     pub strange: Lines,
 }
 
+/// Why a program is not debugged block by block.
+pub(crate) const NO_BLOCKS: &str = "only diagrams have blocks to stop at; programs in Python and JavaScript are debugged in an editor (trik dap)";
+
 /// A program as people see it, and as it runs.
 pub(crate) enum Ready {
     /// A diagram of control flow.
@@ -63,8 +66,7 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
         };
         let mut solution = Solution::read(&job.solution, args)?;
         if solution.script.is_some() {
-            let why = "only diagrams have blocks to stop at; programs in Python and JavaScript are debugged in an editor (trik dap)";
-            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+            return Err(vec![format!("{}: {NO_BLOCKS}", shown(&job.solution))].into());
         }
         let (mut task, strange) = solution.task(job, args)?;
         let program = match solution.flow.take() {

@@ -301,6 +301,10 @@ impl<'a> Session<'a> {
             return self.answered(asked, &message);
         }
         self.memory.hear(&mut message);
+        let resumes = message["command"].as_str().is_some_and(is_resuming);
+        if resumes && message["success"] == true && !self.goes_alone {
+            self.memory.goes_on();
+        }
         if number.is_some() && number == self.going {
             self.going = None;
             // The program stands where it was.
@@ -483,10 +487,10 @@ impl<'a> Session<'a> {
     /// What the editor wants; whether the talk is over.
     fn receive(&mut self, request: Request) -> Option<bool> {
         let request = self.waits(request)?;
-        let is_step = matches!(request.command.as_str(), "next" | "stepIn" | "stepOut");
-        if is_step || request.command == "continue" {
+        if is_resuming(&request.command) {
             // debugpy says of such a step too that all go on.
             let resumes = self.launch.arguments.get("steppingResumesAllThreads");
+            let is_step = request.command != "continue";
             self.goes_alone = is_step && resumes == Some(&Value::Bool(false));
         }
         match request.command.as_str() {
@@ -519,6 +523,11 @@ impl<'a> Session<'a> {
                 self.in_program(&what, Asked::First(request, Instant::now()));
             }
             _ if self.is_told => self.refuse(&request, "the program has ended"),
+            // debugpy would answer when a thread has stopped, and nothing else until then.
+            "continue" if self.is_begun && !self.memory.is_stopped() => {
+                let body = json!({"allThreadsContinued": true});
+                self.client.answer(&request, Ok(body));
+            }
             "configurationDone" if self.launch.truth("stopOnEntry") => {
                 self.memory.note(&request);
                 self.in_program("_stop_on_entry()", Asked::First(request, Instant::now()));
@@ -540,6 +549,11 @@ impl<'a> Session<'a> {
         let body = json!({"category": category, "output": text});
         self.client.event("output", body);
     }
+}
+
+/// Whether threads go on after a request that is granted.
+fn is_resuming(command: &str) -> bool {
+    matches!(command, "continue" | "next" | "stepIn" | "stepOut")
 }
 
 /// What debugpy can, for an editor that was told of programs of blocks.

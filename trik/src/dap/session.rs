@@ -173,10 +173,20 @@ impl<'a> Session<'a> {
     /// Lets the program go on after its beginning.
     fn begin(&mut self) -> Result<(), Error> {
         self.is_configured = true;
+        if self.launch.is_joining {
+            self.order(&Order::Look)?.ok();
+            self.tell_another();
+        }
         if self.is_over {
             self.ended(0);
         } else if self.launch.is_joining && self.told.state == State::Running {
-            // It runs, and goes on running.
+            // It runs, and goes on running, unless the editor wants it to stop.
+            if self.launch.stops_on_entry
+                && self.launch.is_debugged
+                && let Err(Refused(why)) = self.order(&Order::Pause)?
+            {
+                self.output("important", &why);
+            }
         } else if self.launch.stops_on_entry && self.launch.is_debugged {
             self.stopped("entry", None);
         } else {
@@ -186,6 +196,15 @@ impl<'a> Session<'a> {
             self.settle();
         }
         Ok(())
+    }
+
+    /// Says it if what runs is not what the editor shows.
+    fn tell_another(&mut self) {
+        let mut blocks = self.told.threads.iter().map(|thread| &thread.at.id);
+        if blocks.any(|id| !id.is_empty() && !self.listing.has(id)) {
+            let what = super::words::another_runs(&self.name);
+            self.output("important", &words::in_locale(self.launch.locale(), what));
+        }
     }
 
     /// Lets the program run, or waits. What an answer has said already is not among what has happened.

@@ -269,7 +269,7 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Member) -> Result<(u8, String), Erro
     for (member, done) in all.iter().zip(each(&all, work)) {
         let code = match done {
             Ok((code, text)) => {
-                // Who has stopped reading knows enough.
+                // A reader that has stopped reading knows enough.
                 let _ = io::stdout().write_all(harmless(&text).as_bytes());
                 code
             }

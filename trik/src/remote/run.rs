@@ -260,7 +260,7 @@ impl Session {
         if end == End::Well {
             return 0;
         }
-        // Who has closed the output knows that.
+        // A reader that has closed the output knows that.
         if !self.output.is_closed() {
             self.tell(text);
         }

@@ -83,7 +83,7 @@ fn who_asks_without_waiting_takes_time_as_well() {
     let asks = "let n = 0; while (brick.encoder(E3).read() < 11) n++; print(n)";
     let told = printed(&format!("brick.motor(M3).setPower(100); {asks}"));
     assert_eq!(told, ["30 296"]);
-    // Who only computes, too; who computes between waits does not.
+    // One that only computes, too; one that computes between waits does not.
     let told = printed(
         "const end = Date.now() + 50; let n = 0; for (;;) { for (let i = 0; i < 1000; i++); if (Date.now() >= end) break; n++ } print(n)",
     );

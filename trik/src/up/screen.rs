@@ -61,7 +61,7 @@ impl Screen {
             return;
         };
         say("\x1b[?25h");
-        // Who is in the background has no terminal to give back, and would be stopped for trying.
+        // A process in the background has no terminal to give back, and would be stopped for trying.
         if is_foreground() {
             // Without what was typed meanwhile: nobody saw it, and a shell would run it.
             let _ = tcsetattr(io::stdout(), SetArg::TCSAFLUSH, &saved);

@@ -380,7 +380,7 @@ impl<'a> Session<'a> {
         }
         for words in self.beneath.news() {
             let mut out = io::stdout();
-            // Who has stopped reading must not hold up the end; a line fits where there is room at all.
+            // A reader that has stopped reading must not hold up the end; a line fits where there is room at all.
             let mut room = [PollFd::new(out.as_fd(), PollFlags::POLLOUT)];
             if poll(&mut room, PollTimeout::ZERO).is_ok_and(|ready| ready > 0) {
                 let _ = writeln!(out, "{words}").and_then(|()| out.flush());

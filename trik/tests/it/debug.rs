@@ -346,7 +346,7 @@ fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
         "thread main: breakpoint 1\n>   5     Function: n = n + 1",
         "(trik) reload\nchanged: 5 blocks kept, 0 new, 0 gone\n",
         "(trik) print n\n3\n",
-        "this is the past: go to the present first",
+        "a debugger looks at the past: come back to the present first, by `present` or by going on",
         "(trik) info variables\nn = 11\n",
     ] {
         assert!(said.contains(line), "{line}: {said}");

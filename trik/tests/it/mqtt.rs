@@ -129,7 +129,7 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
     let words = ["--control", "--home-assistant", "--deadman", "5000"];
     let mut bridge = broker.bridge(home, &words);
     bridge.says(": connected");
-    // One who comes late is told what there is.
+    // A client that comes late is told what there is.
     let heard = broker.listener(&[]);
     heard.says("trik/7b/anna/life online");
     heard.says("tel/sensors/D1 {\"");
@@ -179,7 +179,7 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
         found.contains("\"availability_topic\":\"trik/7b/anna/life\""),
         "{found}"
     );
-    // One who goes on to drive after a stop is refused.
+    // A client that goes on to drive after a stop is refused.
     broker.says("set/motors/M3", "30", &[]);
     eventually("a motor that runs", || power(&robot) == 30.0);
     broker.says("stop", "", &[]);

@@ -533,7 +533,7 @@ fn a_trikd_that_hangs_does_not_hold_up_the_end_for_ever() {
         assert_eq!(status.code(), Some(0), "{}", one.robot.complaints());
         one.robot.leaves_nothing();
         assert!(!processes::is_alive(guardian));
-        // Who has no patience leaves it to itself: it ends as soon as it goes on.
+        // A person without patience leaves it to itself: it ends as soon as it goes on.
         processes::signal(serving, Signal::SIGCONT);
         eventually("its end", || !processes::is_alive(serving));
     }

@@ -37,6 +37,10 @@ fn only_files_that_are_really_in_the_folder_are_opened_to_be_read() {
         assert!(!is_open(name), "{name}");
     }
     assert!(open(&folder, &home.path().join("secret")).is_ok_and(|file| file.is_none()));
+    // To read makes nothing.
+    let none = open(&folder, &folder.join("none/a.js"));
+    assert_eq!(none.unwrap_err().kind(), std::io::ErrorKind::NotFound);
+    assert!(!folder.join("none").exists());
 }
 
 #[test]

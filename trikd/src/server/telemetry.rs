@@ -53,7 +53,7 @@ impl Session {
 impl Handler for Session {
     async fn frame(&mut self, frame: &[u8]) {
         let out = self.client.outbox.clone();
-        // Who does not read its answers is not answered further.
+        // A client that does not read its answers is not answered further.
         out.room().await;
         self.client.count();
         let sampler = &self.telemetry.sampler;

@@ -137,7 +137,7 @@ fn a_diagram_begins_stopped_and_its_motors_rest_at_each_stop_and_come_back() {
     expect(&mut client, 6, "evaluate n * 100", "\"value\":\"300\"");
     expect(&mut client, 7, "back", "\"state\":\"past\"");
     expect(&mut client, 8, "evaluate n", "\"value\":\"2\"");
-    expect(&mut client, 9, "set n=50", "this is the past");
+    expect(&mut client, 9, "set n=50", "a debugger looks at the past");
     expect(&mut client, 10, "present", "\"state\":\"stopped\"");
     expect(&mut client, 11, "set n=50", "\"value\":\"50\"");
     assert_eq!(motor(&robot), "0", "being in the past moves nothing");

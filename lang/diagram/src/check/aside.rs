@@ -191,6 +191,20 @@ fn at_column(line: &str, at: usize, words: Words) -> Problem {
     problem
 }
 
+/// An assignment in a text that is only looked at.
+pub fn assignment(text: &str) -> Option<Problem> {
+    let source = Source::new(text, Wanted::Any);
+    let mut found = None;
+    each_node(source.tree(), &mut |tree, part, id| {
+        if let Part::Assign { .. } = part {
+            let mut problem = Problem::error(words::assigns());
+            problem.place.position = Some(tree.place(id));
+            found.get_or_insert(problem);
+        }
+    });
+    found
+}
+
 /// What would change the run, or is not known to a program that does not ask for it.
 fn forbidden(known: &Known<'_>, tree: &Tree) -> Vec<Problem> {
     let mut found: Vec<(Position, Words)> = Vec::new();

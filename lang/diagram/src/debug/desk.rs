@@ -62,6 +62,8 @@ pub enum Refused {
     NotHeld(Box<str>),
     /// This thread is held, and makes no step.
     Held(Box<str>),
+    /// All threads are held, and none would go on.
+    AllHeld,
     /// There is no way back.
     Back(NoBack),
     /// Nothing can be changed.
@@ -87,6 +89,7 @@ impl Refused {
             Self::NoSuchThread(name, there) => words::no_such_thread(name, there),
             Self::NotHeld(name) => words::not_held(name),
             Self::Held(name) => words::held(name),
+            Self::AllHeld => words::all_held(),
         };
         words.in_locale(locale).to_owned()
     }
@@ -327,6 +330,7 @@ impl Desk {
             return Ok(());
         }
         match self.session.phase() {
+            Phase::Stopped(_) if self.are_all_held() => Err(Refused::AllHeld),
             Phase::Stopped(_) => {
                 self.session.go_on(now, brick, trace);
                 // A stop at the next block is another stop, which is told again.
@@ -336,6 +340,13 @@ impl Desk {
             Phase::Runs => Err(Refused::NotStopped),
             Phase::Ended { .. } => Err(Refused::Ended),
         }
+    }
+
+    /// Whether every thread that lives is to be held.
+    fn are_all_held(&self) -> bool {
+        let held: BTreeSet<&str> = self.session.held().collect();
+        let mut there = self.session.machine().views();
+        !held.is_empty() && there.all(|view| held.contains(view.name))
     }
 
     /// The thread that makes a step: the one with this name, or the one at which the program is stopped.

@@ -145,8 +145,8 @@ pub(super) fn not_yet() -> Words {
 
 pub(super) fn past() -> Words {
     Words::new(
-        "this is the past: go to the present first",
-        "это прошлое: сначала вернитесь в настоящее",
+        "a debugger looks at the past: come back to the present first, by `present` or by going on",
+        "отладчик показывает прошлое: сначала вернитесь в настоящее командой `present` или продолжите программу",
     )
 }
 
@@ -161,9 +161,9 @@ pub(super) fn not_stopped() -> Words {
 
 pub(super) fn ended() -> Words {
     Words::new(
-        "the program has ended, and does nothing more: look at its past, where breakpoints stop too, or start it again",
+        "the program has ended, and does nothing more: look at its past, where breakpoints stop too, or end the debugger and begin anew",
         "программа закончилась и больше ничего не делает: посмотрите её прошлое, где точки останова тоже действуют, или \
-         запустите её снова",
+         завершите отладчик и начните заново",
     )
 }
 
@@ -199,6 +199,13 @@ pub(super) fn not_held(name: &str) -> Words {
     Words::new(
         format!("the thread '{name}' is not held"),
         format!("поток '{name}' не задержан"),
+    )
+}
+
+pub(super) fn all_held() -> Words {
+    Words::new(
+        "all threads are held, so none would go on: release one first",
+        "все потоки задержаны, ни один не продолжится: сначала отпустите какой-нибудь",
     )
 }
 

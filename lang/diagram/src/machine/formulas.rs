@@ -140,6 +140,16 @@ impl Formulas {
         Ok(())
     }
 
+    /// Runs a statement with what a person has typed: what is odd in it is refused.
+    pub fn run_typed(
+        &mut self,
+        statement: &str,
+        outside: &mut dyn Outside,
+    ) -> Result<(), Vec<Problem>> {
+        self.evaluate_text(statement, Wanted::Statements, outside)
+            .map(drop)
+    }
+
     /// The value of a text that belongs to no block, but that a person has just typed: what is odd in it is refused.
     pub fn evaluate_text(
         &mut self,

@@ -170,9 +170,17 @@ impl Machine {
         watching.port.as_ref().ok().copied()
     }
 
-    /// The value of an expression as the program would compute it now. Nothing changes by it: assignments in it are
-    /// forgotten, and sensors have the readings that the program has.
+    /// The value of an expression as the program would compute it now. Nothing changes by it: it assigns
+    /// nothing, and sensors have the readings that the program has.
     pub fn evaluate_aside(&self, text: &str) -> Result<Value, Vec<Problem>> {
+        let value = self.compute_aside(text)?;
+        match aside::assignment(text) {
+            None => Ok(value),
+            Some(problem) => Err(vec![problem]),
+        }
+    }
+
+    fn compute_aside(&self, text: &str) -> Result<Value, Vec<Problem>> {
         let mut formulas = self.formulas.clone();
         let mut robot = Onlooker {
             machine: self,
@@ -249,7 +257,7 @@ impl Machine {
             machine: self,
             lacking: None,
         };
-        let ran = formulas.run_text(statement, &mut robot);
+        let ran = formulas.run_typed(statement, &mut robot);
         let lacks = robot.lacking.is_some();
         match ran {
             Ok(()) => (Ok(formulas), lacks),
@@ -273,7 +281,7 @@ impl Machine {
             return Err(vec![problem]);
         }
         // Its errors have columns of this text. In brackets it is one expression and no statement after it.
-        self.evaluate_aside(text)?;
+        self.compute_aside(text)?;
         let opening = format!("{variable} = (");
         let statement = format!("{opening}{text})");
         let (tried, _) = self.tried(&opening, &statement);

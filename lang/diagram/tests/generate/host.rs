@@ -358,7 +358,7 @@ impl Host<'_> {
     fn reading(&mut self, name: &str) -> String {
         self.asked += 1;
         if self.asked > LINES_IN_A_STEP {
-            // Who only looks and never waits takes time as well.
+            // A program that only looks and never waits takes time as well.
             self.asked = 0;
             self.tick();
         }

@@ -120,6 +120,16 @@ impl Memory {
         request.command != "continue" && thread.is_some_and(|thread| self.ended.contains(&thread))
     }
 
+    /// Whether some thread was told to be stopped, and not to go on.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.is_some()
+    }
+
+    /// All threads go on.
+    pub fn goes_on(&mut self) {
+        self.stopped = None;
+    }
+
     /// How many programs there were before this one.
     pub fn runs(&self) -> u64 {
         self.runs

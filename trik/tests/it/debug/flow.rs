@@ -62,7 +62,7 @@ fn the_past_of_a_data_flow_program_is_looked_at_and_stays_when_it_has_ended() {
         "breakpoint 1: sum was 18 and is 20, by line 4\n",
         "(trik) rn\npast, 1.00 s: step\n>   4   sum - Text programming: IO0 = sum = gain * I0; sum\n      sum.I0 gets 10\n",
         "(trik) rs\npast, 0.90 s: step\n>   7   wheels - Motors\n      wheels.M3 gets 18\n(trik) p sum\n18\n",
-        "(trik) p sum\n8\n(trik) set gain=5\nthis is the past: go to the present first\n",
+        "(trik) p sum\n8\n(trik) set gain=5\na debugger looks at the past: come back to the present first, by `present` or by going on\n",
         "(trik) n\npast, 0.50 s: step\n>   4   sum",
         "nothing before this is kept\n",
         "(trik) c\n2.50 s: breakpoint 2\n",

@@ -104,6 +104,9 @@ fn a_program_begins_anew_with_its_file_and_its_breakpoints() {
     // While it runs, and with the breakpoint that is set now.
     editor.good("setBreakpoints", points(&robot, &[]));
     editor.good("continue", json!({"threadId": 1}));
+    // Once more it means nothing, and does not wait for a stop.
+    let going = editor.good("continue", json!({"threadId": 1}));
+    assert_eq!(going["allThreadsContinued"], true);
     editor.good("restart", json!({}));
     editor.wait(|message| message["body"]["output"] == "n is 10\n");
     let pause = editor.good("pause", json!({"threadId": 1}));

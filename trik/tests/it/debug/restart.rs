@@ -116,3 +116,41 @@ fn a_diagram_that_runs_already_is_changed_by_who_joins_it() {
     assert!(drives());
     drop(running);
 }
+
+#[test]
+fn an_editor_that_joins_may_stop_what_runs_and_hears_that_it_is_another_diagram() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    let home = &robot.robot.home;
+    let file = home.0.file("drive.qrs", driving("1"));
+    let running = robot.spawn_file(file.to_str().expect("UTF-8"));
+    eventually("a robot that drives", || !robot.rests());
+    let mut short = Sketch::new();
+    let (start, end) = (
+        short.block("InitialNode", &[]),
+        short.block("FinalNode", &[]),
+    );
+    short.chain(&[start, end]);
+    home.0.file("short.qrs", short.qrs().expect("a save"));
+    let joined = |name: &str| {
+        let mut editor = Editor::start();
+        editor.good("initialize", json!({"adapterID": "trik"}));
+        let program = home.0.path(name);
+        let arguments = json!({"program": program, "robot": robot.ip(), "stopOnEntry": true});
+        editor.good("attach", arguments);
+        editor.event("initialized");
+        editor.good("configurationDone", json!({}));
+        editor
+    };
+    let mut editor = joined("short.qrs");
+    told(&mut editor, "another diagram than short.qrs");
+    editor.event("stopped");
+    eventually("motors at rest", || robot.rests());
+    editor.end();
+    eventually("a robot that drives on", || !robot.rests());
+    let mut editor = joined("drive.qrs");
+    editor.event("stopped");
+    editor.end();
+    drop(running);
+}

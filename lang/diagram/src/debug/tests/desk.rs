@@ -109,7 +109,7 @@ fn a_program_is_stopped_stepped_taken_back_and_let_go() {
         "{back}"
     );
     let refused = stage.order("set n=5");
-    assert!(refused.contains("this is the past"), "{refused}");
+    assert!(refused.contains("looks at the past"), "{refused}");
     stage.order("present");
     let set = stage.order("set n=5");
     assert!(set.contains("\"value\":\"5\""), "{set}");
@@ -236,6 +236,15 @@ fn a_thread_that_is_held_is_known_to_all_and_one_that_cannot_be_is_refused() {
     assert!(stage.order("release main").contains("\"done\":true"));
     let again = stage.order("release main");
     assert!(again.contains("the thread 'main' is not held"), "{again}");
+    // If none would go on, nothing is gone on with.
+    stage.order("pause");
+    stage.run(1);
+    stage.order("hold main");
+    stage.order("hold other");
+    let refused = stage.order("continue");
+    assert!(refused.contains("all threads are held"), "{refused}");
+    stage.order("release other");
+    assert!(stage.order("continue").contains("\"done\":true"));
 }
 
 #[test]
@@ -367,7 +376,7 @@ fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
         let answer = stage.order(order);
         assert!(answer.contains("\"done\":false"), "{order}: {answer}");
         assert!(answer.contains("has ended"), "{order}: {answer}");
-        assert!(answer.contains("start it again"), "{order}: {answer}");
+        assert!(answer.contains("begin anew"), "{order}: {answer}");
     }
     assert!(stage.order("evaluate n").contains("\"value\":\"3\""));
     let points = stage.order("breakpoints");
@@ -380,5 +389,5 @@ fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
         "{back}"
     );
     assert!(stage.order("evaluate n").contains("\"value\":\"1\""));
-    assert!(stage.order("set n=4").contains("this is the past"));
+    assert!(stage.order("set n=4").contains("looks at the past"));
 }

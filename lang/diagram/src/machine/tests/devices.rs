@@ -399,8 +399,8 @@ fn a_wrong_answer_is_asked_for_once_more_before_the_program_fails() {
             answer,
         )
     };
-    // A name, nothing at all, a text where the program computes, and half an expression.
-    let ran = asked(&["nonsense", "", "'five'", "2 +", "21"], 4);
+    // A name, nothing at all, a text where the program computes, half an expression, and a number that would count as 0.
+    let ran = asked(&["nonsense", "", "'five'", "2 +", "99999999999", "21"], 5);
     assert_eq!(ran.errors(), Vec::<String>::new());
     assert_eq!(ran.text("y"), "42");
     let ran = asked(&["nonsense", "'five'"], 1);
