@@ -7,6 +7,7 @@
 use crate::chunk::{Chunk, HEADER_BYTES};
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
+use crate::node::Node;
 use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
@@ -120,12 +121,17 @@ pub fn copy<R: Read, W: Write + Seek>(
 }
 
 /// Makes a file of a recording that is read while it is made, until `from` ends: what is a second old, by the time of the
-/// messages, is in the file if this is killed.
+/// messages, is in the file if this is killed. `begun` hears the nodes that are known when the first message comes, once.
 ///
 /// # Errors
 /// It is no recording, or the file cannot be written.
-pub fn follow<R: Read, W: Write + Seek>(from: R, to: W) -> Result<Saved, Error> {
+pub fn follow<R: Read, W: Write + Seek>(
+    from: R,
+    to: W,
+    begun: impl FnOnce(&[Node]) + 'static,
+) -> Result<Saved, Error> {
     let mut target = Target::new(to);
+    target.begun = Some(Box::new(begun));
     target.flushed_ns = Some(0);
     let mut saved = Saved::default();
     target.pour(from, &mut saved, &|_, _, _| true)?;
@@ -195,6 +201,10 @@ struct Target<W: Write + Seek> {
     is_begun: bool,
     /// The message with which all was handed to the file the last time; None if nobody waits for that.
     flushed_ns: Option<u64>,
+    /// Who hears the nodes that are known when the first message comes; None if nobody does, or it has come.
+    begun: Option<Box<dyn FnOnce(&[Node])>>,
+    /// These nodes, while somebody is to hear them.
+    nodes: Vec<Node>,
     /// Several recordings become one.
     joins: bool,
     /// Checksums of the files that go with it, by their names.
@@ -215,6 +225,8 @@ impl<W: Write + Seek> Target<W> {
             to: Some(to),
             is_begun: false,
             flushed_ns: None,
+            begun: None,
+            nodes: Vec::new(),
             joins: false,
             attached: HashMap::new(),
             schemas: HashMap::new(),
@@ -355,9 +367,16 @@ impl<W: Write + Seek> Target<W> {
                     (_, None) => return Ok(true),
                 };
                 let id = declare(out, schema, &channel).map_err(disk)?;
+                if self.begun.is_some() {
+                    let node = Node::of_channel(&channel.topic, &channel.metadata);
+                    self.nodes.extend(node);
+                }
                 self.channels.insert(channel.id, (id, channel.topic));
             }
             Record::Message { header, data } => {
+                if let Some(begun) = self.begun.take() {
+                    begun(&std::mem::take(&mut self.nodes));
+                }
                 let known = self.known.as_ref();
                 if !knows(out, &mut self.channels, known, header.channel_id).map_err(disk)? {
                     // Others of its chunk may be known.

@@ -1,7 +1,9 @@
 //! What a recorder costs beside a robot: processor, memory, bytes, and how long reads of others take with it and without.
 //!
 //! `RECORDER_TREE=DIR cargo bench -p recorder --bench beside` with the tree of a robot mounted there, such as that of
-//! `trik up`. Windows with and without a recorder take turns, so that other work of the machine meets both.
+//! `trik up`. Windows with and without a recorder take turns, so that other work of the machine meets both. Memory is that of
+//! a process of its own, from before the tree is looked at to the most that it ever has: in one that has recorded before,
+//! what was freed would be taken again and not seen.
 
 use recorder::entry::{Batch, events};
 use recorder::file::Disk;
@@ -10,6 +12,7 @@ use recorder::watch::{Watch, Wish};
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -17,6 +20,10 @@ use std::time::{Duration, Instant};
 
 const WINDOW: Duration = Duration::from_secs(2);
 const PAIRS: usize = 10;
+/// In the environment of the process that measures memory: whether it writes messages of standard types.
+const MEMORY_OF: &str = "RECORDER_MEMORY_OF";
+/// How long that one records: several chunks, and most of what is ever allocated.
+const MEMORY_WINDOW: Duration = Duration::from_secs(10);
 /// What programs read while they drive.
 const READ: [&str; 3] = ["sensors/A1/value", "encoders/E3/value", "gyroscope/value"];
 
@@ -59,7 +66,6 @@ struct Done {
     cpu_s: f64,
     bytes: f64,
     lost: u64,
-    memory: f64,
 }
 
 struct Recorder {
@@ -72,7 +78,6 @@ impl Recorder {
     fn start(root: &Path, file: PathBuf, is_standard: bool) -> Self {
         let stop = Arc::<AtomicBool>::default();
         let (ends, root) = (stop.clone(), root.to_owned());
-        let before = memory();
         let wants = Box::new(|_: &str| Some(Wish::Samples));
         let watch = Watch::begin(&root, "bench", wants).expect("a tree");
         let create = if is_standard {
@@ -81,7 +86,7 @@ impl Recorder {
             Disk::create
         };
         let disk = create(&file, "bench", WAITING_BYTES).expect("a file");
-        let thread = thread::spawn(move || record(watch, disk, &ends, before));
+        let thread = thread::spawn(move || record(watch, disk, &ends));
         Self { stop, thread }
     }
 
@@ -91,7 +96,7 @@ impl Recorder {
     }
 }
 
-fn record(mut watch: Watch, disk: Disk, ends: &AtomicBool, before: f64) -> Done {
+fn record(mut watch: Watch, disk: Disk, ends: &AtomicBool) -> Done {
     disk.put(&watch.beginning().into());
     let mut done = Done::default();
     while !ends.load(Ordering::Relaxed) {
@@ -106,13 +111,37 @@ fn record(mut watch: Watch, disk: Disk, ends: &AtomicBool, before: f64) -> Done 
     }
     done.nodes = watch.recorded();
     done.lost += watch.missed();
-    done.memory = memory() - before;
     done.cpu_s = cpu_s(Path::new("/proc/thread-self")) + writer_cpu_s();
     let path = disk.path().to_owned();
     disk.finish().expect("written");
     done.bytes = fs::metadata(&path).map_or(0.0, |file| file.len() as f64);
     fs::remove_file(&path).expect("it was there");
     done
+}
+
+/// Bytes that a recorder takes at most, measured in a process that does nothing else.
+fn memory_of_one(root: &Path, is_standard: bool) -> f64 {
+    let program = std::env::current_exe().expect("this program");
+    let output = Command::new(program)
+        .env("RECORDER_TREE", root)
+        .env(MEMORY_OF, is_standard.to_string())
+        .output()
+        .expect("this program once more");
+    let text = String::from_utf8_lossy(&output.stdout);
+    text.trim().parse().unwrap_or(f64::NAN)
+}
+
+/// What that process does, and prints.
+fn measure_memory(root: &Path, folder: &Path, is_standard: bool) {
+    let before = memory();
+    let recorder = Recorder::start(root, folder.join("memory.mcap"), is_standard);
+    let (begin, mut most) = (Instant::now(), 0.0_f64);
+    while begin.elapsed() < MEMORY_WINDOW {
+        most = most.max(memory() - before);
+        thread::sleep(Duration::from_millis(1));
+    }
+    recorder.end();
+    println!("{most}");
 }
 
 /// The median time of a read in one window, in us.
@@ -150,6 +179,9 @@ fn main() {
         return;
     };
     let folder = tempfile::tempdir().expect("a folder");
+    if let Ok(is_standard) = std::env::var(MEMORY_OF) {
+        return measure_memory(&root, folder.path(), is_standard == "true");
+    }
     let open = |name: &&str| File::open(root.join(name)).expect("a node of the robot");
     let files: Vec<File> = READ.iter().map(open).collect();
     for is_standard in [true, false] {
@@ -206,7 +238,7 @@ fn main() {
             "KB/s",
             60.0,
         );
-        let most = done.iter().map(|done| done.memory).fold(0.0, f64::max);
+        let most = memory_of_one(&root, is_standard);
         line("  memory at most", most / 1e6, "MB", 1.0);
         println!(
             "  a read takes {:.1} us alone, {:.1} us beside it",

@@ -36,8 +36,7 @@ use order::Order;
 use player::{Begin, CONTROL, Player, SOCKET};
 use recording::Recording;
 use std::ffi::OsString;
-use std::os::fd::AsRawFd;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use world::RecordedWorld;
 
@@ -106,14 +105,14 @@ fn played(args: &ReplayArgs, signals: &SignalFd) -> Result<FileRecording, Error>
         include: &args.include,
         only: &[],
     })?;
-    let failed = |why| Error::system("a file of its own", why);
-    let file = tempfile::tempfile().map_err(failed)?;
-    // A file without a name has this one.
-    let made = PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()));
+    // It has no name: what is wrong with its folder, such as no room, is told by that, and all else by the recording.
+    let folder = std::env::temp_dir();
+    let failed = |why| Error::file(&folder, why);
+    let file = tempfile::tempfile_in(&folder).map_err(failed)?;
     let copy = file.try_clone().map_err(failed)?;
     let wants_end = || matches!(signals.read_signal(), Ok(Some(_)));
-    tape::write(&mut run, (copy, &made), &wants_end)?;
-    FileRecording::open(&made)
+    tape::write(&mut run, (copy, &folder), &wants_end)?;
+    FileRecording::of(file, &args.file)
 }
 
 /// True if nothing differs from the recording.

@@ -11,15 +11,18 @@ use crate::output::Output;
 use crate::record::NO_RAW;
 use crate::record::args::RecordArgs;
 use crate::recording::fresh::Fresh;
-use crate::refusal::Refusal;
+use crate::refusal::{self, Refusal};
 use crate::up::session::signals;
 use clap::Args;
+use journal::node::Node;
 use journal::read::Reader;
 use nix::sys::signalfd::SignalFd;
+use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 /// What `trik box save` can be told.
@@ -63,10 +66,22 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
     let place = Output::recording(&args.output, args.force).make_room()?;
     let file = File::create_new(&place).map_err(|error| Error::file(&args.output, error))?;
     let hint = "; trik mend keeps what was written before";
-    let kept = keep(pieces, &args.output, &file, hint)?;
+    // Told at once: at the end it is too late to begin anew.
+    let is_told = Rc::<Cell<bool>>::default();
+    let (tells, name) = (is_told.clone(), args.output.clone());
+    let is_wanted = args.raw;
+    let begun = move |nodes: &[Node]| {
+        if is_wanted && !nodes.iter().any(|node| node.is_raw) {
+            tells.set(true);
+            let why = Error::file(&name, format!("{NO_RAW}; all else is recorded"));
+            refusal::say(&Refusal::from(why).lines);
+        }
+    };
+    let kept = keep(pieces, &args.output, &file, (hint, begun))?;
     kept.tell()?;
     match args.raw && !has_raw(&args.output)? {
-        // All else is there.
+        true if is_told.get() => Err(Error::Reported.into()),
+        // Nothing else is there either.
         true => Err(Error::file(&args.output, NO_RAW).into()),
         false => Ok(0),
     }
@@ -94,7 +109,7 @@ pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
     let mut pieces = Pieces::of(&robot, &[b"box"], None)?;
     pieces.wait()?;
     let fresh = Fresh::new(&args.output, Path::new(""), args.force)?;
-    let kept = keep(pieces, &args.output, &fresh.file()?, "")?;
+    let kept = keep(pieces, &args.output, &fresh.file()?, ("", |_| {}))?;
     // A part is better than nothing, but not than what is there.
     if kept.failure.is_none() || !args.output.exists() {
         fresh.place()?;
@@ -120,10 +135,16 @@ impl Kept {
     }
 }
 
-/// Puts all pieces into a file that has this name for a person, with a hint if the disk takes no more; the first is there.
-fn keep(mut pieces: Pieces, name: &Path, file: &File, hint: &str) -> Result<Kept, Error> {
+/// Puts all pieces into a file that has this name for a person; the first is there. With a hint if the disk takes no more, and
+/// for one who hears which nodes there are.
+fn keep(
+    mut pieces: Pieces,
+    name: &Path,
+    file: &File,
+    (hint, begun): (&str, impl FnOnce(&[Node]) + 'static),
+) -> Result<Kept, Error> {
     let begin = Instant::now();
-    let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
+    let saved = journal::mend::follow(&mut pieces, BufWriter::new(file), begun);
     if pieces.is_watched {
         // A terminal that is gone has nothing to clear.
         let _ = write!(io::stderr(), "\r\x1b[K");

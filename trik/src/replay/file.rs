@@ -25,7 +25,17 @@ impl FileRecording {
     /// # Errors
     /// It is none, is cut, or has no nodes that can be played.
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
-        let file = File::open(path).map_err(|error| Error::file(path, error))?;
+        Self::of(
+            File::open(path).map_err(|error| Error::file(path, error))?,
+            path,
+        )
+    }
+
+    /// The same of a file that is open; errors name it by this path.
+    ///
+    /// # Errors
+    /// As of `open`.
+    pub(crate) fn of(file: File, path: &Path) -> Result<Self, Error> {
         if !file.metadata().is_ok_and(|file| file.is_file()) {
             return Err(Error::file(path, "a recording is a regular file"));
         }

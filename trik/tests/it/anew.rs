@@ -11,7 +11,7 @@ use journal::write::Writer;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{BufRead, BufReader, BufWriter, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -215,6 +215,21 @@ fn a_tree_gives_what_another_configuration_makes() {
     record(&home.0.path("run.mcap"));
     let ten = BEFORE.replace("* 3", "* 10").replace("'mm'", "'um'");
     fs::write(home.0.path("new.lua"), ten).expect("written");
+    // What cannot be played is told by the name of the recording.
+    let large = BEFORE.replace(
+        "format = 'i32 distance', units = 'mm'",
+        "output_tuple_size = 140000",
+    );
+    fs::write(home.0.path("large.lua"), large).expect("written");
+    let refused = home.run(&["replay", "run.mcap", "--config", "large.lua", "--exit"]);
+    let why = refused.stderr;
+    assert!(
+        why.starts_with("trik: run.mcap: sensors/D: tuples of 140000 bytes"),
+        "{why}"
+    );
+    let mut nowhere = home.command(&["replay", "run.mcap", "--config", "new.lua", "--exit"]);
+    let refused = tools::run(nowhere.env("TMPDIR", "/nowhere"), b"").stderr;
+    assert!(refused.starts_with("trik: /nowhere: "), "{refused}");
     let words = ["--config", "new.lua", "--paused"];
     let mut replay = Robot::replay(home.clone(), "run.mcap", &words);
     let order = |line: &str| {
@@ -325,14 +340,22 @@ fn a_tree_without_bytes_of_devices_says_how_there_are_some() {
     let words = ["record", "--raw", "-o", "far.mcap", "--robot", robot.ip()];
     let mut command = home.command(&words);
     let recorder = command.stdout(Stdio::null()).stderr(Stdio::piped());
-    let recorder = recorder.spawn().expect("trik record");
-    eventually("a recording", || home.0.path("far.mcap").exists());
+    let mut recorder = recorder.spawn().expect("trik record");
+    let mut told = BufReader::new(recorder.stderr.take().expect("standard error"));
+    // While it records, and once.
+    let mut why = String::new();
+    told.read_line(&mut why).expect("a line");
+    assert!(
+        why.contains("far.mcap") && why.contains("trik up --raw"),
+        "{why}"
+    );
+    assert!(home.0.path("far.mcap").exists());
     let pid = Pid::from_raw(i32::try_from(recorder.id()).expect("a pid"));
     kill(pid, Signal::SIGINT).expect("SIGINT");
-    let refused = recorder.wait_with_output().expect("an end");
-    assert_eq!(refused.status.code(), Some(1));
-    let why = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(why.contains("trik up --raw"), "{why}");
+    assert_eq!(recorder.wait().expect("an end").code(), Some(1));
+    let mut rest = String::new();
+    told.read_to_string(&mut rest).expect("the rest");
+    assert_eq!(rest, "");
     // What there is stays.
     home.run(&["info", "far.mcap"]).good();
     let refused = home.run(&["record", "--raw", "-o", "run.mcap"]);

@@ -381,4 +381,77 @@ mod tests {
         assert_eq!(rows[1].get_string(5).unwrap(), "=hi");
         assert_eq!(rows[2].get_string(6).unwrap(), "a: errno 19: gone");
     }
+
+    /// The same recording as both tables, by the command itself.
+    fn export(folder: &Path, name: &str) -> std::path::PathBuf {
+        let place = folder.join(name);
+        let args = super::super::ExportArgs {
+            file: folder.join("run.mcap"),
+            only: Vec::new(),
+            from: None,
+            to: None,
+            output: Some(place.clone()),
+            parquet: false,
+            csv: false,
+            force: false,
+        };
+        assert_eq!(super::super::run(&args), Ok(0));
+        place
+    }
+
+    #[test]
+    fn pyarrow_reads_the_values_that_are_in_the_csv() {
+        let Some(python) = std::env::var_os("TRIK_ARROW_PYTHON") else {
+            needs::Need::Extra.missing("TRIK_ARROW_PYTHON is not set");
+            return;
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let file = BufWriter::new(File::create_new(folder.path().join("run.mcap")).unwrap());
+        let mut recording = Writer::new(file, "test").unwrap();
+        let mut node = Node::sensor("sensors/A1", "i16 x, u64 big, f32 y, f64 z, >u32 up");
+        node.units = "cm".to_owned();
+        let node = recording.add(&node).unwrap();
+        let says = recording.add(&Node::sensor("says", "text 7")).unwrap();
+        let blob = recording.add(&Node::sensor("blob", "u8 x 3")).unwrap();
+        for at in 0..200_u32 {
+            let unix_ns = 1_700_000_000_123_456_789 + u64::from(at) * 20_000_001;
+            let third = f64::from(at) / 3.0;
+            let mut tuple = (100 - at.cast_signed() as i16).to_le_bytes().to_vec();
+            tuple.extend((u64::MAX - u64::from(at)).to_le_bytes());
+            tuple.extend((third as f32).to_le_bytes());
+            tuple.extend((-third * 1e-9).to_le_bytes());
+            tuple.extend((u32::MAX - at).to_be_bytes());
+            recording.sample(node, unix_ns, &tuple).unwrap();
+            if at.is_multiple_of(50) {
+                recording.sample(says, unix_ns + 1, b"=1,\"a\"\0").unwrap();
+                recording.sample(blob, unix_ns + 2, &[0, 254, 7]).unwrap();
+                (recording.fault(node, unix_ns + 3, 19, "device: gone, \"quite\"")).unwrap();
+            }
+        }
+        recording.finish().unwrap();
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/table.py");
+        let output = std::process::Command::new(python)
+            .arg(script)
+            .arg(export(folder.path(), "run.parquet"))
+            .arg(export(folder.path(), "run.csv"))
+            .output()
+            .unwrap();
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let told = "time: timestamp[ns, tz=UTC]
+time_s: double [] 212 of 212
+sensors/A1.x: int16 [cm] 200 of 212
+sensors/A1.big: uint64 [cm] 200 of 212
+sensors/A1.y: float [cm] 200 of 212
+sensors/A1.z: double [cm] 200 of 212
+sensors/A1.up: uint32 [cm] 200 of 212
+says: string [] 4 of 212
+blob: binary [] 4 of 212
+fault: string [] 4 of 212
+";
+        assert_eq!(String::from_utf8_lossy(&output.stdout), told);
+    }
 }

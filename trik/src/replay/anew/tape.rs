@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes it into an empty file, which has this path, until somebody wants an end of that.
+/// Writes it into an empty file, of which errors have this name, until somebody wants an end of that.
 ///
 /// # Errors
 /// What the run says, the file cannot be written, or the end.
