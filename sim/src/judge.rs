@@ -6,6 +6,7 @@
 // A thing, part or record that is forgotten must not compile.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod clock;
 mod dataflow;
 pub mod debugged;
 pub mod hands;
@@ -25,6 +26,7 @@ pub mod trial;
 pub mod witness;
 mod words;
 
+pub use clock::Clock;
 pub use dataflow::Dataflow;
 pub use lint::lint;
 pub use picture::{Caption, page, svg};

@@ -3,6 +3,7 @@
 //! Owns verdicts, messages, trajectory and track; `trial` has the order of one tick. The same task, program and settings give
 //! the same outcome; only the limit of real time can make a difference, and then there is no verdict.
 
+use super::clock::Clock;
 use super::hands::Deed;
 use super::program::{Program, Running};
 use super::recorder::Recorder;
@@ -19,6 +20,7 @@ use lang_diagram::brick::Brick;
 use lang_diagram::machine::Status;
 use lang_diagram::ports::{Port, Sort};
 use lang_text::problem::{Locale, Problem, Words};
+use std::rc::Rc;
 use std::time::Duration;
 
 /// How a run ended.
@@ -58,6 +60,8 @@ pub struct Settings {
     pub longest_ms: u32,
     /// Longest run in real time.
     pub longest: Duration,
+    /// What real time is read from.
+    pub clock: Clock,
     /// Seed of everything that is random.
     pub seed: u64,
     /// What a person answers when a program asks, in order.
@@ -84,6 +88,7 @@ impl Default for Settings {
             keep_going: false,
             longest_ms: 600_000,
             longest: Duration::from_secs(60),
+            clock: Clock::default(),
             seed: 1,
             answers: Vec::new(),
             deeds: None,
@@ -126,8 +131,8 @@ pub struct Outcome {
 }
 
 /// What changes while a run is judged.
-pub(super) struct Run<'a> {
-    settings: &'a Settings,
+pub(super) struct Run {
+    settings: Rc<Settings>,
     checker: Option<Checker>,
     entries: Vec<Entry>,
     trajectory: Trajectory,
@@ -140,8 +145,8 @@ pub(super) struct Run<'a> {
     pub failure: Option<Failure>,
 }
 
-impl<'a> Run<'a> {
-    pub fn new(task: &Task, settings: &'a Settings, arena: &Arena) -> Self {
+impl Run {
+    pub fn new(task: &Task, settings: &Rc<Settings>, arena: &Arena) -> Self {
         let checker = task.rules.clone().map(|rules| {
             let checker = Checker::new(rules, settings.locale);
             let checker = match settings.is_explaining {
@@ -169,7 +174,7 @@ impl<'a> Run<'a> {
             text: words.in_locale(settings.locale).to_owned(),
         });
         Self {
-            settings,
+            settings: Rc::clone(settings),
             checker,
             entries: entries.collect(),
             trajectory,

@@ -24,7 +24,7 @@ use lang_diagram::program::Program as Lowered;
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem, Severity, Words};
 use sim::field::Locks;
-use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
+use sim::judge::{self, Caption, Clock, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -253,6 +253,7 @@ pub(super) fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         keep_going: args.keep_going,
         longest_ms: (args.time_limit * 1000.0) as u32,
         longest: Duration::from_secs_f64(args.wall_limit),
+        clock: Clock::default(),
         seed: u64::from(args.seed),
         answers,
         deeds,
