@@ -32,7 +32,7 @@ pub use lint::lint;
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program, Running, Spot};
 pub use replay::{judge_recorded, strange_in_record};
-pub use run::{Failure, Outcome, Settings, Verdict};
+pub use run::{Failure, Outcome, Settings, Verdict, devices};
 pub use task::{Task, Texts};
 pub use track::Group;
 pub use trajectory::Trajectory;

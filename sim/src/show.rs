@@ -5,6 +5,7 @@
 
 pub(crate) mod field;
 pub(crate) mod moving;
+pub mod seen;
 mod text;
 #[cfg(feature = "board")]
 mod watcher;
@@ -12,7 +13,6 @@ mod watcher;
 #[cfg(feature = "board")]
 pub use watcher::Watcher;
 
-use crate::arena::Arena;
 use crate::field::Locks;
 use crate::geometry::{Point, Pose};
 use crate::limits;
@@ -205,17 +205,6 @@ pub struct Placed {
     pub is_stuck: bool,
     /// The colour of a marker that draws; empty if none does.
     pub marker: String,
-}
-
-/// What stands still in a world that runs, as JSON. Each robot begins where it is now.
-pub fn still(arena: &Arena) -> String {
-    let start = arena.robots().first().map(moving::pose);
-    text::scene(&field::scene(arena, start.unwrap_or_default()), &[])
-}
-
-/// What moves in it, as JSON.
-pub fn motion(arena: &Arena) -> String {
-    text::moving(&moving::moving(arena), &text::Beside::default())
 }
 
 /// What a lidar shows people: `range_m` takes an angle clockwise from ahead.

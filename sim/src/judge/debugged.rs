@@ -4,7 +4,7 @@
 //! Owns the way of orders to a program that is held, or between two ticks, or over. Knows no person and no files.
 
 use super::Dataflow;
-use super::program::{Program, Running, describe};
+use super::program::{Program, Running, alive, describe};
 use super::track::Group;
 use super::trial::{Progress, Trial};
 use lang_dataflow::machine::patch as flow;
@@ -262,7 +262,7 @@ impl Program for Debugged {
 
     fn running(&self) -> Vec<Running> {
         match &self.program {
-            Debuggee::Diagram(_) => Vec::new(),
+            Debuggee::Diagram(desk) => alive(desk.live()),
             Debuggee::Flow(flow) => flow.running(),
         }
     }

@@ -11,7 +11,7 @@ use super::report;
 use super::task::Task;
 use super::track::{Group, Track};
 use super::trajectory::{Record, Trajectory};
-use crate::arena::Arena;
+use crate::arena::{Arena, Robot};
 use crate::limits;
 use lang_constraint::{
     self as rules, Checker, Entry, Explanation, Level, Value, Verdict as Decision,
@@ -130,6 +130,31 @@ pub struct Outcome {
     pub running: Vec<Running>,
 }
 
+/// Tells the devices of a robot: power in percent or angle in degrees of what moves, the newest reading of what was read; and
+/// whether it is a motor that stands still and is no wheel.
+pub fn devices(robot: &Robot, tell: &mut dyn FnMut(Port, i32, bool)) {
+    let description = robot.description();
+    for port in Port::all() {
+        match port.sort() {
+            Sort::Motor => {
+                let power = robot.power(port);
+                let is_wheel = [description.left, description.right].contains(&Some(port));
+                tell(port, power, power == 0 && !is_wheel);
+            }
+            Sort::Servo => {
+                let degrees = robot.servo(port);
+                tell(port, degrees, degrees == 0);
+            }
+            Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
+                if robot.readings.is_read(port) {
+                    tell(port, robot.readings.last(port), false);
+                }
+            }
+            Sort::Vector => {}
+        }
+    }
+}
+
 /// What changes while a run is judged.
 pub(super) struct Run {
     settings: Rc<Settings>,
@@ -216,33 +241,15 @@ impl Run {
         program.describe(self.settings.locale, &mut |group, name, value| {
             track.note(group, name, now, value);
         });
-        for port in Port::all() {
-            match port.sort() {
-                Sort::Motor => {
-                    let power = robot.power(port);
-                    let is_wheel = [robot.description().left, robot.description().right];
-                    if power != 0
-                        || is_wheel.contains(&Some(port))
-                        || track.has(Group::Motor, port.name())
-                    {
-                        track.note(Group::Motor, port.name(), now, &power.to_string());
-                    }
-                }
-                Sort::Servo => {
-                    let degrees = robot.servo(port);
-                    if degrees != 0 || track.has(Group::Motor, port.name()) {
-                        track.note(Group::Motor, port.name(), now, &degrees.to_string());
-                    }
-                }
-                Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
-                    if robot.readings.is_read(port) {
-                        let reading = robot.readings.last(port);
-                        track.note(Group::Sensor, port.name(), now, &reading.to_string());
-                    }
-                }
-                Sort::Vector => {}
+        devices(robot, &mut |port, value, is_idle| {
+            let group = match port.sort() {
+                Sort::Motor | Sort::Servo => Group::Motor,
+                Sort::Encoder | Sort::Scalar | Sort::Button(_) | Sort::Vector => Group::Sensor,
+            };
+            if !is_idle || track.has(group, port.name()) {
+                track.note(group, port.name(), now, &value.to_string());
             }
-        }
+        });
         track.round(now);
     }
 

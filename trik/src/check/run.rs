@@ -24,7 +24,9 @@ use lang_diagram::program::Program as Lowered;
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem, Severity, Words};
 use sim::field::Locks;
-use sim::judge::{self, Caption, Clock, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
+use sim::judge::{
+    self, Caption, Clock, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory,
+};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
