@@ -57,7 +57,7 @@ fi
 # What the page tells is done in a folder of its own, as a reader has it.
 mkdir -p "$made/reader/node_modules"
 cp -r "$package" "$made/reader/node_modules/trik-studio-web"
-cp "$made/ours/projects/a_arith.qrs" "$made/reader/task.qrs"
+cp "$made/ours/projects/d2_motor_stuck_wheels.qrs" "$made/reader/task.qrs"
 node web/test/documents.mjs docs/user/studio.md "$made/reader" | while read -r example; do
     (cd "$made/reader" && node "$example")
 done
