@@ -49,10 +49,9 @@ impl Wish {
         let is_debugging = options.flag("debug")?;
         options.end()?;
         let deeds = gamepad.map(|text| judge::hands::read(&text));
-        let deeds = deeds.transpose().map_err(|why| {
-            let why = why.to_string();
-            Failure::Request(words::wrong_option("gamepad", &why, &why))
-        })?;
+        let deeds = deeds
+            .transpose()
+            .map_err(|why| Failure::Request(words::wrong_gamepad(&why.to_string())))?;
         let usual = Settings::default();
         let settings = Settings {
             locale: *locale,

@@ -4,6 +4,7 @@
 //! a mistake of the code that asks.
 
 use crate::failure::Failure;
+use crate::words::Wanted;
 use crate::{limits, words};
 use lang_text::problem::Locale;
 use serde_json::{Map, Value};
@@ -35,8 +36,8 @@ impl Options {
         self.0.remove(name).filter(|value| !value.is_null())
     }
 
-    fn wrong(name: &str, english: &str, russian: &str) -> Failure {
-        Failure::Request(words::wrong_option(name, english, russian))
+    fn wrong(name: &str, wanted: Wanted) -> Failure {
+        Failure::Request(words::wrong_option(name, wanted))
     }
 
     /// Yes or no; without the option no.
@@ -47,7 +48,7 @@ impl Options {
         match self.take(name) {
             None => Ok(false),
             Some(Value::Bool(value)) => Ok(value),
-            Some(_) => Err(Self::wrong(name, "true or false", "true или false")),
+            Some(_) => Err(Self::wrong(name, Wanted::Flag)),
         }
     }
 
@@ -59,7 +60,7 @@ impl Options {
         match self.take(name) {
             None => Ok(None),
             Some(Value::String(text)) => Ok(Some(text)),
-            Some(_) => Err(Self::wrong(name, "a text", "текст")),
+            Some(_) => Err(Self::wrong(name, Wanted::Text)),
         }
     }
 
@@ -68,7 +69,7 @@ impl Options {
     /// # Errors
     /// It is something else, or longer than [`limits::ANSWERS_MAX`].
     pub fn texts(&mut self, name: &str) -> Result<Vec<String>, Failure> {
-        let wrong = || Self::wrong(name, "a list of texts", "список текстов");
+        let wrong = || Self::wrong(name, Wanted::Texts);
         let all = match self.take(name) {
             None => return Ok(Vec::new()),
             Some(Value::Array(all)) if all.len() <= limits::ANSWERS_MAX => all,
@@ -90,11 +91,7 @@ impl Options {
         match value.as_ref().map(Value::as_f64) {
             None => Ok(None),
             Some(Some(number)) if (least..=most).contains(&number) => Ok(Some(number)),
-            Some(_) => Err(Self::wrong(
-                name,
-                &format!("a number from {least} to {most}"),
-                &format!("число от {least} до {most}"),
-            )),
+            Some(_) => Err(Self::wrong(name, Wanted::Number(least, most))),
         }
     }
 
@@ -103,7 +100,7 @@ impl Options {
     /// # Errors
     /// There is no such language.
     pub fn locale(&mut self) -> Result<Locale, Failure> {
-        let wrong = || Self::wrong("locale", "'en' or 'ru'", "'en' или 'ru'");
+        let wrong = || Self::wrong("locale", Wanted::Locale);
         match self.text("locale")? {
             None => Ok(Locale::default()),
             Some(name) => Locale::named(&name).ok_or_else(wrong),

@@ -47,7 +47,7 @@ struct Over {
 }
 
 impl Run {
-    /// Before the first tick. Options are those of [`Wish::read`]; real time is bounded by whoever calls.
+    /// Before the first tick. Options are those of [`Wish::read`]; the caller bounds real time.
     pub fn begin(project: &Project, options: &str) -> Answer<Self> {
         let mut locale = Locale::default();
         let begun = Wish::read(options, Clock::default(), &mut locale).and_then(|mut wish| {

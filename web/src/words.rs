@@ -10,11 +10,44 @@ pub(crate) fn no_option(name: &str) -> Words {
     )
 }
 
+/// What an option has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wanted {
+    /// Yes or no.
+    Flag,
+    /// A text.
+    Text,
+    /// Several texts.
+    Texts,
+    /// A number from the first to the second one.
+    Number(f64, f64),
+    /// A language of messages.
+    Locale,
+}
+
 /// An option with a value of another kind.
-pub(crate) fn wrong_option(name: &str, english: &str, russian: &str) -> Words {
+pub(crate) fn wrong_option(name: &str, wanted: Wanted) -> Words {
+    let (english, russian) = match wanted {
+        Wanted::Flag => ("true or false".to_owned(), "true или false".to_owned()),
+        Wanted::Text => ("a text".to_owned(), "текст".to_owned()),
+        Wanted::Texts => ("a list of texts".to_owned(), "список текстов".to_owned()),
+        Wanted::Number(least, most) => (
+            format!("a number from {least} to {most}"),
+            format!("число от {least} до {most}"),
+        ),
+        Wanted::Locale => ("'en' or 'ru'".to_owned(), "'en' или 'ru'".to_owned()),
+    };
     Words::new(
         format!("the option '{name}' is {english}"),
         format!("параметр '{name}' - {russian}"),
+    )
+}
+
+/// A line of what a person does that means nothing.
+pub(crate) fn wrong_gamepad(why: &str) -> Words {
+    Words::new(
+        format!("the option 'gamepad': {why}"),
+        format!("параметр 'gamepad': {why}"),
     )
 }
 

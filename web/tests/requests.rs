@@ -8,9 +8,9 @@ use web::judged::judge;
 use web::project::{Project, lint};
 use web::run::Run;
 
-/// The robot has to be 20 pixels ahead within two seconds.
+/// The robot has to be 100 pixels ahead within two seconds.
 const WORLD: &str = r#"<root version="20251219"><world><regions>
-<region id="there" type="rectangle" x="20" y="-100" width="500" height="300"/></regions>
+<region id="there" type="rectangle" x="100" y="-200" width="5000" height="500"/></regions>
 <robot position="0:0" direction="0"/></world>
 <robots><robot id="trikKitRobot"/></robots><settings/>
 <constraints><timelimit value="2000"/>

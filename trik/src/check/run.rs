@@ -9,7 +9,6 @@ use super::jobs::{Job, shown};
 use super::recorded;
 use super::row::Row;
 use super::script::{self, Language, Setup};
-use super::verdict::Verdict;
 use super::words;
 use crate::diagrams::flow::{self, Flow};
 use crate::diagrams::save::{Unreadable, open};
@@ -31,6 +30,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
+use studio::verdict::Verdict;
 
 /// Ends of the names of files, where each run has its own.
 pub(super) const REPORT: &str = ".json";
