@@ -127,9 +127,17 @@ fn a_debugger_holds_model_time() {
     assert_eq!((run.tick(1), run.tick(100)), ("held", "held"));
     let reports: Value = serde_json::from_str(&run.reports()).unwrap();
     assert!(!reports.as_array().unwrap().is_empty());
-    answer(&mut run, "step");
-    answer(&mut run, "step");
-    answer(&mut run, "step");
+    let has_a = |run: &Run| {
+        let state: Value = serde_json::from_str(&run.state()).unwrap();
+        state["variables"]["a"] == "5"
+    };
+    let mut steps = 0;
+    while !has_a(&run) {
+        answer(&mut run, "step");
+        assert_eq!(run.tick(50), "held", "after {steps} steps");
+        steps += 1;
+        assert!(steps < 5, "{}", run.state());
+    }
     assert_eq!(answer(&mut run, "evaluate a + 1")["value"], "6");
     answer(&mut run, "detach");
     while run.tick(1000) == "runs" {}
