@@ -6,6 +6,7 @@
 // A thing, part or record that is forgotten must not compile.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod clock;
 mod dataflow;
 pub mod debugged;
 pub mod hands;
@@ -25,12 +26,13 @@ pub mod trial;
 pub mod witness;
 mod words;
 
+pub use clock::Clock;
 pub use dataflow::Dataflow;
 pub use lint::lint;
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program, Running, Spot};
 pub use replay::{judge_recorded, strange_in_record};
-pub use run::{Failure, Outcome, Settings, Verdict};
+pub use run::{Failure, Outcome, Settings, Verdict, devices};
 pub use task::{Task, Texts};
 pub use track::Group;
 pub use trajectory::Trajectory;

@@ -4,9 +4,13 @@
 //! makes JSON of it, `field` a scene of a world of TRIK Studio, and [`Watcher`] serves people who look at a running board.
 
 pub(crate) mod field;
+pub(crate) mod moving;
+pub mod seen;
 mod text;
+#[cfg(feature = "board")]
 mod watcher;
 
+#[cfg(feature = "board")]
 pub use watcher::Watcher;
 
 use crate::field::Locks;

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
-pub(crate) const LARGEST: [(&str, usize); 23] = [
+pub(crate) const LARGEST: [(&str, usize); 25] = [
     ("bridge", 1),
     ("config", 4),
     ("converter", 3),
@@ -29,9 +29,11 @@ pub(crate) const LARGEST: [(&str, usize); 23] = [
     ("sample-bus", 1),
     ("screen", 3),
     ("sim", 8),
+    ("studio", 1),
     ("trik", 4),
     ("trikd", 9),
     ("trikfs", 12),
+    ("web", 1),
 ];
 
 /// The way to a module from the root of its crate.

@@ -18,7 +18,7 @@ mod russian;
 mod waits;
 
 /// Folders of our crates, those that the workspace has as members.
-pub(crate) const CRATES: [&str; 25] = [
+pub(crate) const CRATES: [&str; 27] = [
     "bridge",
     "config",
     "converter",
@@ -39,11 +39,13 @@ pub(crate) const CRATES: [&str; 25] = [
     "sample-bus",
     "screen",
     "sim",
+    "studio",
     "tests",
     "tests/needs",
     "trik",
     "trikd",
     "trikfs",
+    "web",
 ];
 /// Files that may hold `unsafe`, as beginnings of paths.
 const UNSAFE: [&str; 12] = [
@@ -247,8 +249,10 @@ fn sources_and_documents_are_ascii() {
         "page/src",
         "screen/src",
         "sim/src",
+        "studio/src",
         "trik/src",
         "trikd/src",
+        "web/src",
     ]
     .map(|part| root().join(part));
     // A row of a block or of a reading has its words in both languages.
@@ -386,7 +390,7 @@ fn there_are_no_atomics_that_the_controller_lacks() {
 fn what_is_pure_knows_no_files_network_threads_or_clocks() {
     let mut complaints = Vec::new();
     for source in sources().iter().filter(|source| !source.is_test()) {
-        let is_pure = ["lang/", "screen/", "filters/"]
+        let is_pure = ["lang/", "screen/", "filters/", "studio/"]
             .iter()
             .any(|part| source.path.starts_with(part))
             && source.path.contains("/src/");

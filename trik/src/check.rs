@@ -24,7 +24,6 @@ mod run;
 mod sandbox_args;
 mod script;
 mod staged;
-mod verdict;
 mod walk;
 mod words;
 mod worker;
@@ -46,7 +45,7 @@ use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use verdict::{Counts, Verdict};
+use studio::verdict::{Counts, Verdict};
 
 /// How often progress is shown.
 const PROGRESS_EVERY: Duration = Duration::from_millis(200);

@@ -16,12 +16,13 @@ use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
 use super::{BadOrder, Body, Drive, GRAVITY_MPS2, Order, Power, Senses};
 use crate::arena::floor::{Window, sensors};
-use crate::arena::{Arena, Setup, Timeline, ranges, screen};
-use crate::field::{Field, Locks, Sensor, SensorKind};
+use crate::arena::{Arena, Setup, Timeline, ranges};
+use crate::field::{Field, Locks, SensorKind};
 use crate::geometry::{Point, Pose, point};
 use crate::limits;
-use crate::show::field::{PIXELS_IN_M, pixels, place};
-use crate::show::{self, Moving, Placed, Scene};
+use crate::show::field::{pixels, place};
+use crate::show::moving::LIGHT_WHOLE;
+use crate::show::{self, Moving, Scene};
 use crate::world::{Colour, colour};
 
 /// A tick of the arena in seconds.
@@ -30,8 +31,6 @@ const TICK_S: f64 = 0.01;
 const TOUCH_RAW: [f64; 2] = [20.0, 1000.0];
 /// What it gives for white, and how much more for black.
 const LIGHT_RAW: [f64; 2] = [30.0, 993.0];
-/// What a light sensor of the original says of black; of white it says 0.
-const LIGHT_WHOLE: f64 = 99.0;
 /// How much of its picture the camera shows: as much as the line sensor of the original sees.
 const CAMERA_PART: f64 = 2.0;
 
@@ -156,13 +155,7 @@ impl Studio {
     }
 
     fn pose(&self) -> Pose {
-        let robot = &self.arena.robots()[0];
-        let centre = robot.centre();
-        Pose::new(
-            centre.x / PIXELS_IN_M,
-            -centre.y / PIXELS_IN_M,
-            -robot.pose().degrees.to_radians(),
-        )
+        show::moving::pose(&self.arena.robots()[0])
     }
 
     /// What the connectors carry after a tick.
@@ -287,24 +280,6 @@ impl Studio {
         Ok(())
     }
 
-    /// What a sensor that people see has said last.
-    fn reading(&self, sensor: &Sensor) -> Option<f64> {
-        let port = sensor.port?;
-        let robot = &self.arena.robots()[0];
-        let said = f64::from(robot.readings.last(port));
-        let within = |beam: ranges::Beam| {
-            let is_near = said < f64::from(beam.reach_cm);
-            is_near.then_some(said / 100.0)
-        };
-        match sensor.kind {
-            SensorKind::Infrared => within(ranges::INFRARED),
-            SensorKind::Sonar => within(ranges::SONAR),
-            SensorKind::Light => Some(said / LIGHT_WHOLE),
-            SensorKind::Touch => Some(said),
-            SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => None,
-        }
-    }
-
     fn analog(&mut self, index: usize) -> Option<f64> {
         let port = named('A', index)?;
         let kind = self.arena.robots()[0].sensor(port)?.kind;
@@ -386,13 +361,7 @@ impl Body for Studio {
 
     fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
         let robot = &self.arena.robots()[0];
-        let (at, degrees) = robot.sensor_pose(robot.sensor_of(SensorKind::Lidar)?);
-        let px = ranges::ray(
-            self.arena.solids(),
-            at,
-            degrees + clockwise_rad.to_degrees(),
-        )?;
-        Some(px / PIXELS_IN_M)
+        show::moving::range_m(robot, self.arena.solids(), clockwise_rad)
     }
 
     fn has_infrared_camera(&self) -> bool {
@@ -436,39 +405,14 @@ impl Body for Studio {
     }
 
     fn moving(&self) -> Moving {
-        let robot = &self.arena.robots()[0];
-        let readings = |sensor: &Sensor| {
-            show::field::sensor(robot.description(), sensor).map(|_| self.reading(sensor))
-        };
-        let thing = |solid: &crate::field::Solid| {
-            let at = place(solid.at);
-            Pose::new(at.x, at.y, -solid.rotation.to_radians())
-        };
-        let marker = robot.marker();
-        Moving {
-            time_s: f64::from(self.arena.now()) / 1000.0,
+        let mut moving = Moving {
             is_paused: self.timeline.is_paused(),
             speed: self.timeline.speed(),
-            robots: vec![Placed {
-                pose: self.senses.pose,
-                readings: robot
-                    .description()
-                    .sensors
-                    .iter()
-                    .filter_map(readings)
-                    .collect(),
-                rays_m: match self.has_lidar() {
-                    true => show::rays(|angle| self.range_m(angle)),
-                    false => Vec::new(),
-                },
-                is_stuck: robot.is_stuck(),
-                marker: match marker.is_down {
-                    true => screen::hex(screen::named(&marker.colour)),
-                    false => String::new(),
-                },
-            }],
-            things: self.arena.field().solids.iter().map(thing).collect(),
-        }
+            ..show::moving::moving(&self.arena)
+        };
+        // As the connectors have it.
+        moving.robots[0].pose = self.senses.pose;
+        moving
     }
 
     /// Of the picture of the last tick.

@@ -4,7 +4,7 @@
 //! Owns the way of orders to a program that is held, or between two ticks, or over. Knows no person and no files.
 
 use super::Dataflow;
-use super::program::{Program, Running, describe};
+use super::program::{Program, Running, alive, describe};
 use super::track::Group;
 use super::trial::{Progress, Trial};
 use lang_dataflow::machine::patch as flow;
@@ -165,7 +165,7 @@ impl Debugged {
 /// [`Refused`]; nothing has changed then. Of a diagram a version is refused too if a thread is at a block that it does not
 /// have.
 pub fn patch(
-    trial: &mut Trial<'_>,
+    trial: &mut Trial,
     program: &mut Debugged,
     version: &Version,
 ) -> Result<String, Refused> {
@@ -262,7 +262,7 @@ impl Program for Debugged {
 
     fn running(&self) -> Vec<Running> {
         match &self.program {
-            Debuggee::Diagram(_) => Vec::new(),
+            Debuggee::Diagram(desk) => alive(desk.live()),
             Debuggee::Flow(flow) => flow.running(),
         }
     }
@@ -270,7 +270,7 @@ impl Program for Debugged {
 
 /// Gives an order to a debugged program in its run; the answer is JSON, as the desk of its language has it. A program that
 /// was held finishes its tick with it, or is held again.
-pub fn order(trial: &mut Trial<'_>, program: &mut Debugged, tag: u32, text: &str) -> String {
+pub fn order(trial: &mut Trial, program: &mut Debugged, tag: u32, text: &str) -> String {
     match trial.progress() {
         Progress::Held => {
             program.request = Some(Request::Order(tag, text.to_owned()));

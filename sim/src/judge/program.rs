@@ -205,27 +205,37 @@ impl Program for Diagram {
             false => step.ended_ms == last,
         });
         let program = self.machine.program();
-        let running = told.filter_map(|step| {
-            let node = step.node?;
-            let row = program.row(node);
-            let cut = |text: &str| text.chars().take(limits::RUNNING_CHARS_MAX).collect();
-            let text = |text: Option<&str>| -> String { text.map_or_else(String::new, cut) };
-            Some(Running {
-                thread: text(Some(&step.name)),
-                ended_ms: step.ended_ms,
-                at: Spot::Block {
-                    diagram: text(program.diagram(node)),
-                    id: text(program.id(node)),
-                    kind: text(row.map(|row| row.kind)),
-                    caption: [
-                        text(row.map(|row| row.shown)),
-                        text(row.map(|row| row.russian)),
-                    ],
-                },
-            })
-        });
+        let running =
+            told.filter_map(|step| Some(running(program, &step.name, step.ended_ms, step.node?)));
         running.take(limits::RUNNING_MAX).collect()
     }
+}
+
+/// A thread of a diagram at a block.
+fn running(program: &Lowered, thread: &str, ended_ms: Option<u32>, node: Node) -> Running {
+    let row = program.row(node);
+    let cut = |text: &str| text.chars().take(limits::RUNNING_CHARS_MAX).collect();
+    let text = |text: Option<&str>| -> String { text.map_or_else(String::new, cut) };
+    Running {
+        thread: text(Some(thread)),
+        ended_ms,
+        at: Spot::Block {
+            diagram: text(program.diagram(node)),
+            id: text(program.id(node)),
+            kind: text(row.map(|row| row.kind)),
+            caption: [
+                text(row.map(|row| row.shown)),
+                text(row.map(|row| row.russian)),
+            ],
+        },
+    }
+}
+
+/// Where the threads of a diagram are that live.
+pub(super) fn alive(machine: &Machine) -> Vec<Running> {
+    let threads = machine.threads().take(limits::RUNNING_MAX);
+    let all = threads.map(|(thread, node)| running(machine.program(), thread, None, node));
+    all.collect()
 }
 
 /// Says what a diagram does at this moment: its variables, and the blocks at which its threads are.

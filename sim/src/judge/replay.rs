@@ -15,7 +15,7 @@ use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::Port;
 use lang_diagram::stand_in::Pose;
 use lang_text::problem::Words;
-use std::time::Instant;
+use std::rc::Rc;
 
 /// Judges a recorded run: every robot of it that the world knows by its name. Its last moment is the end of its program.
 pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings) -> Outcome {
@@ -31,7 +31,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         ..Setup::default()
     };
     let mut arena = Arena::new(&field, setup);
-    let mut run = Run::new(task, settings, &arena);
+    let mut run = Run::new(task, &Rc::new(settings.clone()), &arena);
     let is_pose_of_ours = |record: &Record| match record {
         Record::Pose { robot, .. } => cast[usize::from(*robot)].is_some(),
         Record::Device { .. } => false,
@@ -51,7 +51,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         .collect();
     let mut records = trajectory.records.iter().peekable();
     let end = trajectory.records.last().map_or(0, Record::ms);
-    let began = Instant::now();
+    let began = settings.clock.now();
     let mut now = 0;
     loop {
         for (track, index) in &mut tracks {
@@ -73,7 +73,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
             run.ended(now, false, &mut arena);
             break;
         }
-        if began.elapsed() > settings.longest {
+        if settings.clock.since(began) > settings.longest {
             run.fail(now, words::too_slow(settings.longest.as_secs_f64()));
             run.verdict = Some(Verdict::Unknown);
             break;

@@ -3,6 +3,7 @@
 //! Owns verdicts, messages, trajectory and track; `trial` has the order of one tick. The same task, program and settings give
 //! the same outcome; only the limit of real time can make a difference, and then there is no verdict.
 
+use super::clock::Clock;
 use super::hands::Deed;
 use super::program::{Program, Running};
 use super::recorder::Recorder;
@@ -10,7 +11,7 @@ use super::report;
 use super::task::Task;
 use super::track::{Group, Track};
 use super::trajectory::{Record, Trajectory};
-use crate::arena::Arena;
+use crate::arena::{Arena, Robot};
 use crate::limits;
 use lang_constraint::{
     self as rules, Checker, Entry, Explanation, Level, Value, Verdict as Decision,
@@ -19,6 +20,7 @@ use lang_diagram::brick::Brick;
 use lang_diagram::machine::Status;
 use lang_diagram::ports::{Port, Sort};
 use lang_text::problem::{Locale, Problem, Words};
+use std::rc::Rc;
 use std::time::Duration;
 
 /// How a run ended.
@@ -58,6 +60,8 @@ pub struct Settings {
     pub longest_ms: u32,
     /// Longest run in real time.
     pub longest: Duration,
+    /// What real time is read from.
+    pub clock: Clock,
     /// Seed of everything that is random.
     pub seed: u64,
     /// What a person answers when a program asks, in order.
@@ -84,6 +88,7 @@ impl Default for Settings {
             keep_going: false,
             longest_ms: 600_000,
             longest: Duration::from_secs(60),
+            clock: Clock::default(),
             seed: 1,
             answers: Vec::new(),
             deeds: None,
@@ -125,9 +130,34 @@ pub struct Outcome {
     pub running: Vec<Running>,
 }
 
+/// Tells the devices of a robot: power in percent or angle in degrees of what moves, the newest reading of what was read; and
+/// whether it is a motor that stands still and is no wheel.
+pub fn devices(robot: &Robot, tell: &mut dyn FnMut(Port, i32, bool)) {
+    let description = robot.description();
+    for port in Port::all() {
+        match port.sort() {
+            Sort::Motor => {
+                let power = robot.power(port);
+                let is_wheel = [description.left, description.right].contains(&Some(port));
+                tell(port, power, power == 0 && !is_wheel);
+            }
+            Sort::Servo => {
+                let degrees = robot.servo(port);
+                tell(port, degrees, degrees == 0);
+            }
+            Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
+                if robot.readings.is_read(port) {
+                    tell(port, robot.readings.last(port), false);
+                }
+            }
+            Sort::Vector => {}
+        }
+    }
+}
+
 /// What changes while a run is judged.
-pub(super) struct Run<'a> {
-    settings: &'a Settings,
+pub(super) struct Run {
+    settings: Rc<Settings>,
     checker: Option<Checker>,
     entries: Vec<Entry>,
     trajectory: Trajectory,
@@ -140,8 +170,8 @@ pub(super) struct Run<'a> {
     pub failure: Option<Failure>,
 }
 
-impl<'a> Run<'a> {
-    pub fn new(task: &Task, settings: &'a Settings, arena: &Arena) -> Self {
+impl Run {
+    pub fn new(task: &Task, settings: &Rc<Settings>, arena: &Arena) -> Self {
         let checker = task.rules.clone().map(|rules| {
             let checker = Checker::new(rules, settings.locale);
             let checker = match settings.is_explaining {
@@ -169,7 +199,7 @@ impl<'a> Run<'a> {
             text: words.in_locale(settings.locale).to_owned(),
         });
         Self {
-            settings,
+            settings: Rc::clone(settings),
             checker,
             entries: entries.collect(),
             trajectory,
@@ -211,33 +241,15 @@ impl<'a> Run<'a> {
         program.describe(self.settings.locale, &mut |group, name, value| {
             track.note(group, name, now, value);
         });
-        for port in Port::all() {
-            match port.sort() {
-                Sort::Motor => {
-                    let power = robot.power(port);
-                    let is_wheel = [robot.description().left, robot.description().right];
-                    if power != 0
-                        || is_wheel.contains(&Some(port))
-                        || track.has(Group::Motor, port.name())
-                    {
-                        track.note(Group::Motor, port.name(), now, &power.to_string());
-                    }
-                }
-                Sort::Servo => {
-                    let degrees = robot.servo(port);
-                    if degrees != 0 || track.has(Group::Motor, port.name()) {
-                        track.note(Group::Motor, port.name(), now, &degrees.to_string());
-                    }
-                }
-                Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
-                    if robot.readings.is_read(port) {
-                        let reading = robot.readings.last(port);
-                        track.note(Group::Sensor, port.name(), now, &reading.to_string());
-                    }
-                }
-                Sort::Vector => {}
+        devices(robot, &mut |port, value, is_idle| {
+            let group = match port.sort() {
+                Sort::Motor | Sort::Servo => Group::Motor,
+                Sort::Encoder | Sort::Scalar | Sort::Button(_) | Sort::Vector => Group::Sensor,
+            };
+            if !is_idle || track.has(group, port.name()) {
+                track.note(group, port.name(), now, &value.to_string());
             }
-        }
+        });
         track.round(now);
     }
 

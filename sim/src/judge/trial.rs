@@ -3,7 +3,7 @@
 //! Owns the order of one tick: the world moves, the rules look, the program steps, what it has said is heard. A program that
 //! is held in the middle of its step holds the tick, and model time with it.
 
-use super::hands::{self, Deed};
+use super::hands;
 use super::program::Program;
 use super::run::{Failure, Outcome, Run, Settings, Verdict};
 use super::task::Task;
@@ -12,7 +12,8 @@ use crate::arena::{Arena, Gamepad, Person, Setup};
 use lang_constraint::Entry;
 use lang_diagram::brick::Brick;
 use lang_diagram::machine::{STEP_MS, Status};
-use std::time::Instant;
+use std::rc::Rc;
+use std::time::Duration;
 
 /// How often the clock is looked at, in ticks.
 const CLOCK_TICKS: u32 = 64;
@@ -29,21 +30,23 @@ pub enum Progress {
 }
 
 /// A run between its beginning and its verdict.
-pub struct Trial<'a> {
-    settings: &'a Settings,
+pub struct Trial {
+    settings: Rc<Settings>,
     arena: Arena,
-    run: Run<'a>,
-    deeds: &'a [Deed],
-    began: Instant,
+    run: Run,
+    /// How many deeds of a person were done.
+    deeds: usize,
+    began: Duration,
     now: u32,
     progress: Progress,
     /// The next tick is the first.
     is_new: bool,
 }
 
-impl<'a> Trial<'a> {
+impl Trial {
     /// A program that has not begun, in the world of a task.
-    pub fn new(task: &Task, program: &dyn Program, settings: &'a Settings) -> Self {
+    pub fn new(task: &Task, program: &dyn Program, settings: &Settings) -> Self {
+        let settings = Rc::new(settings.clone());
         let setup = Setup {
             seed: settings.seed,
             sensors: task.sensors.clone(),
@@ -52,7 +55,7 @@ impl<'a> Trial<'a> {
             ..Setup::default()
         };
         let mut arena = Arena::new(&task.field, setup);
-        let mut run = Run::new(task, settings, &arena);
+        let mut run = Run::new(task, &settings, &arena);
         if let (Some(_), Some(robot)) = (&settings.deeds, arena.robot_mut(0)) {
             robot.set_gamepad(Some(Gamepad::default()));
         }
@@ -65,11 +68,11 @@ impl<'a> Trial<'a> {
             progress = Progress::Over;
         }
         Self {
-            settings,
             arena,
             run,
-            deeds: settings.deeds.as_deref().unwrap_or_default(),
-            began: Instant::now(),
+            deeds: 0,
+            began: settings.clock.now(),
+            settings,
             now: 0,
             progress,
             is_new: true,
@@ -106,11 +109,12 @@ impl<'a> Trial<'a> {
                 return false;
             }
         }
-        if !self.deeds.is_empty()
-            && let Some(robot) = self.arena.robot_mut(0)
-        {
-            hands::act(&mut self.deeds, self.now, robot);
+        let deeds = self.settings.deeds.as_deref().unwrap_or_default();
+        let mut rest = &deeds[self.deeds..];
+        if let Some(robot) = self.arena.robot_mut(0) {
+            hands::act(&mut rest, self.now, robot);
         }
+        self.deeds = deeds.len() - rest.len();
         true
     }
 
@@ -141,7 +145,7 @@ impl<'a> Trial<'a> {
             return Progress::Over;
         }
         let is_time_to_look = (now / STEP_MS).is_multiple_of(CLOCK_TICKS);
-        if is_time_to_look && self.began.elapsed() > settings.longest {
+        if is_time_to_look && settings.clock.since(self.began) > settings.longest {
             run.fail(now, words::too_slow(settings.longest.as_secs_f64()));
             run.verdict = Some(Verdict::Unknown);
             return Progress::Over;

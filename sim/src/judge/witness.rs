@@ -18,7 +18,7 @@ use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::{Port, Sort};
 use lang_diagram::stand_in;
 use lang_text::problem::Words;
-use std::time::Instant;
+use std::rc::Rc;
 
 /// How often the clock is looked at, in ticks.
 const CLOCK_TICKS: u32 = 64;
@@ -217,8 +217,8 @@ pub fn judge_seen(task: &Task, witness: &mut dyn Witness, settings: &Settings) -
     };
     let mut arena = Arena::new(&field, Setup::default());
     let start = arena.robots()[0].pose();
-    let mut run = Run::new(task, settings, &arena);
-    let began = Instant::now();
+    let mut run = Run::new(task, &Rc::new(settings.clone()), &arena);
+    let began = settings.clock.now();
     let mut now = 0;
     loop {
         let mut seen = Seen {
@@ -251,7 +251,7 @@ pub fn judge_seen(task: &Task, witness: &mut dyn Witness, settings: &Settings) -
             break;
         }
         let is_time_to_look = (now / STEP_MS).is_multiple_of(CLOCK_TICKS);
-        if is_time_to_look && began.elapsed() > settings.longest {
+        if is_time_to_look && settings.clock.since(began) > settings.longest {
             run.fail(now, words::too_slow(settings.longest.as_secs_f64()));
             run.verdict = Some(Verdict::Unknown);
             break;

@@ -17,10 +17,11 @@ const ON_EVERY_PAGE: [&str; 6] = [
 
 /// Marks of examples that are run on pages that the source of a test names: the mark, that source, and the page if it
 /// runs the mark on no other one of those that it names.
-const ON_NAMED_PAGES: [(&str, &str, &str); 16] = [
+const ON_NAMED_PAGES: [(&str, &str, &str); 17] = [
     ("dcml", "trik/tests/it/dcml.rs", ""),
     ("expression", "lang/expr/src/tests/documents.rs", ""),
     ("js generated", "lang/diagram/tests/generate/main.rs", ""),
+    ("js studio", "web/test/documents.mjs", ""),
     ("python stepik", "trik/tests/it/check/class.rs", ""),
     ("sh check", "trik/tests/it/check.rs", ""),
     ("sh check", "trik/tests/it/documents.rs", "docs/dcml.md"),

@@ -5,7 +5,7 @@
 use super::{none, sources};
 
 /// Crates that are held to it.
-const NAMED: [&str; 23] = [
+const NAMED: [&str; 25] = [
     "bridge",
     "config",
     "converter",
@@ -26,9 +26,11 @@ const NAMED: [&str; 23] = [
     "sample-bus",
     "screen",
     "sim",
+    "studio",
     "trik",
     "trikd",
     "trikfs",
+    "web",
 ];
 /// Names that any type could have.
 const EMPTY: [&str; 8] = [

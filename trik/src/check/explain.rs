@@ -4,12 +4,12 @@
 
 mod words;
 
-use super::verdict::Verdict;
 use lang_constraint::{Explained, Kind, Near, Seen, Standing, Unit};
 use lang_diagram::stand_in::PIXELS_IN_CM;
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 use sim::judge::{Outcome, Running, Spot};
+use studio::verdict::Verdict;
 
 /// What is told of a run: an object, whose `text` has the lines for people.
 pub(super) fn explanation(outcome: &Outcome, locale: Locale) -> Value {

@@ -11,7 +11,6 @@ mod page;
 use super::class::{Column, Plan};
 use super::grade_args::{Form, GradeArgs, Source};
 use super::row::Row;
-use super::verdict::Verdict;
 use super::words;
 use crate::output::Output;
 use crate::refusal::Refusal;
@@ -19,6 +18,7 @@ use crate::terminal::{harmless, named};
 use lang_text::problem::Locale;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use studio::verdict::Verdict;
 
 /// One run as the table keeps it.
 #[derive(Clone, Debug)]

@@ -3,13 +3,13 @@
 //! Owns the forms: a platform is a row of [`Platform`] with its exit codes and its lines. What came of the runs is given.
 
 use super::row::Row;
-use super::verdict::Verdict;
 use super::words;
 use crate::terminal::harmless;
 use clap::ValueEnum;
 use lang_text::problem::Locale;
 use serde_json::json;
 use std::ffi::OsString;
+use studio::verdict::Verdict;
 
 /// A platform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

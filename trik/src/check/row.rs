@@ -2,12 +2,12 @@
 //!
 //! Owns both forms. The line is also what a worker process tells.
 
-use super::verdict::Verdict;
 use super::{explain, points, words};
 use crate::limits;
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use sim::judge::json::{self, Value};
+use studio::verdict::Verdict;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,6 @@ use super::jobs::{Job, shown};
 use super::recorded;
 use super::row::Row;
 use super::script::{self, Language, Setup};
-use super::verdict::Verdict;
 use super::words;
 use crate::diagrams::flow::{self, Flow};
 use crate::diagrams::save::{Unreadable, open};
@@ -24,11 +23,14 @@ use lang_diagram::program::Program as Lowered;
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem, Severity, Words};
 use sim::field::Locks;
-use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
+use sim::judge::{
+    self, Caption, Clock, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory,
+};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
+use studio::verdict::Verdict;
 
 /// Ends of the names of files, where each run has its own.
 pub(super) const REPORT: &str = ".json";
@@ -253,6 +255,7 @@ pub(super) fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         keep_going: args.keep_going,
         longest_ms: (args.time_limit * 1000.0) as u32,
         longest: Duration::from_secs_f64(args.wall_limit),
+        clock: Clock::default(),
         seed: u64::from(args.seed),
         answers,
         deeds,

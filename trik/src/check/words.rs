@@ -1,10 +1,10 @@
 //! What `trik check` says itself, in English and Russian.
 
-use super::verdict::{Counts, Verdict};
 use super::walk::Reason;
 use lang_text::near::did_you_mean;
 use lang_text::problem::{Locale, Words};
 use std::io;
+use studio::verdict::{Counts, Verdict};
 
 /// A text in a language.
 pub(super) fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {

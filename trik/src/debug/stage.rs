@@ -28,7 +28,7 @@ const TICKS: usize = 16;
 
 /// A run that waits for orders.
 pub(crate) struct Stage<'a> {
-    trial: Option<Trial<'a>>,
+    trial: Option<Trial>,
     program: Debugged,
     outcome: Option<Outcome>,
     /// Its end was told.

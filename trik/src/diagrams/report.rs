@@ -1,18 +1,15 @@
 //! Problems of a diagram as lines for a person: file, in a text its line and column, how bad, diagram, block with its place,
 //! property, words; and as lines of JSON.
 //!
-//! Owns the order of problems and both forms of a line.
+//! Owns the form of a line for people. The order of problems and their JSON are known in `studio`.
 
 use super::flow::Flow;
 use crate::terminal::{harmless, named};
-use lang_dataflow::text::Places;
 use lang_diagram::blocks;
-use lang_diagram::project::{Block, Project};
+use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Position, Problem, Severity};
-use serde_json::json;
-use std::cmp::Reverse;
-use std::collections::HashMap;
 use std::path::Path;
+use studio::findings::Findings;
 
 /// How many problems of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,123 +32,48 @@ impl Count {
     }
 }
 
-/// What lines and columns of a file are known.
-enum Lines<'a> {
-    /// None: a save is an archive.
-    None,
-    /// Those that problems have: nobody could read the text.
-    OfProblems,
-    /// Those of the objects in a text.
-    OfObjects(Places<'a>),
-}
-
-/// Problems of one save as lines.
+/// Problems of one file as lines.
 pub(super) struct Reporter<'a> {
     file: String,
-    lines: Lines<'a>,
-    blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
+    findings: Findings<'a>,
     locale: Locale,
 }
 
 impl<'a> Reporter<'a> {
     /// For a save, with its project if it could be read.
     pub fn new(file: &Path, project: Option<&'a Project>, locale: Locale) -> Self {
-        let mut blocks = HashMap::new();
-        for (at, diagram) in project
-            .iter()
-            .flat_map(|one| one.diagrams.iter().enumerate())
-        {
-            for (place, block) in diagram.blocks.iter().enumerate() {
-                blocks.entry(&*block.id).or_insert((at, place, block));
-            }
-        }
+        Self::of(file, Findings::new(project), locale)
+    }
+
+    /// For a data-flow program.
+    pub fn of_flow(file: &Path, flow: &'a Flow, locale: Locale) -> Self {
+        Self::of(file, Findings::of_flow(flow), locale)
+    }
+
+    /// For any file.
+    pub fn of(file: &Path, findings: Findings<'a>, locale: Locale) -> Self {
         Self {
             file: named(file),
-            lines: Lines::None,
-            blocks,
+            findings,
             locale,
-        }
-    }
-
-    /// For a text that could not be read: an editor can go to the places of its problems.
-    pub fn of_unread_text(file: &Path, locale: Locale) -> Self {
-        Self {
-            lines: Lines::OfProblems,
-            ..Self::new(file, None, locale)
-        }
-    }
-
-    /// For a data-flow program: an editor can go to the places of what is wrong with its text, if it has one.
-    pub fn of_flow(file: &Path, flow: &'a Flow, locale: Locale) -> Self {
-        let text = flow.text.as_deref();
-        Self {
-            lines: text.map_or(Lines::None, |text| {
-                Lines::OfObjects(Places::of(text, &flow.project))
-            }),
-            ..Self::new(file, None, locale)
-        }
-    }
-
-    /// The places of problems in the file.
-    fn in_file(&self, problems: &[Problem]) -> Vec<Option<Position>> {
-        match &self.lines {
-            Lines::None => vec![None; problems.len()],
-            Lines::OfProblems => problems.iter().map(|one| one.place.position).collect(),
-            Lines::OfObjects(places) => places.locate(problems),
         }
     }
 
     /// The worst first, then diagram after diagram, block after block, and each only once.
     pub fn sort(&self, problems: &mut Vec<Problem>) {
-        let place = |problem: &Problem| {
-            let block = self.block(problem);
-            let (diagram, at) = block.map_or((usize::MAX, 0), |&(diagram, at, _)| (diagram, at));
-            (diagram, at, problem.place.position)
-        };
-        problems.sort_by_key(|problem| (Reverse(problem.severity), place(problem)));
-        problems.dedup();
+        self.findings.sort(problems);
     }
 
     /// A line for each.
     pub fn lines(&self, problems: &[Problem]) -> Vec<String> {
-        let places = problems.iter().zip(self.in_file(problems));
+        let places = problems.iter().zip(self.findings.in_file(problems));
         places.map(|(problem, at)| self.line(problem, at)).collect()
     }
 
-    /// A line of JSON for each: level and message as in the results of `trik check`, and where it is.
+    /// A line of JSON for each.
     pub fn json(&self, problems: &[Problem]) -> Vec<String> {
-        let line = |(problem, in_file): (&Problem, Option<Position>)| {
-            let place = &problem.place;
-            let level = match problem.severity {
-                Severity::Error => "error",
-                Severity::Warning => "warning",
-                Severity::Note => "note",
-            };
-            let at = place.position;
-            let mut line = json!({
-                "file": self.file,
-                "level": level,
-                "message": problem.said(self.locale),
-                "part": place.file,
-                "diagram": place.diagram,
-                "object": place.object,
-                "block": place.block,
-                "property": place.property,
-                "line": at.map(|at| at.line),
-                "column": at.map(|at| at.column),
-            });
-            if let Some(at) = in_file {
-                line["fileLine"] = at.line.into();
-                line["fileColumn"] = at.column.into();
-            }
-            line.to_string()
-        };
-        let places = problems.iter().zip(self.in_file(problems));
-        places.map(line).collect()
-    }
-
-    fn block(&self, problem: &Problem) -> Option<&(usize, usize, &'a Block)> {
-        self.blocks.get(problem.place.object.as_deref()?)
+        let all = self.findings.json(&self.file, problems, self.locale);
+        all.iter().map(ToString::to_string).collect()
     }
 
     fn line(&self, problem: &Problem, in_file: Option<Position>) -> String {
@@ -166,7 +88,7 @@ impl<'a> Reporter<'a> {
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));
         }
-        let found = self.block(problem).map(|(_, _, block)| *block);
+        let found = self.findings.block(problem);
         let row = found.and_then(|block| blocks::find(&block.kind));
         if let Some(block) = found {
             let (x, y) = block.position;

@@ -10,18 +10,10 @@ use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
-use lang_text::problem::{Locale, Problem, Words};
+use lang_text::problem::{Locale, Words};
 use std::path::Path;
-
-/// Why a save cannot be read.
-pub(crate) enum Unreadable {
-    /// The file itself.
-    File(Words),
-    /// What is in it.
-    Save(Vec<Problem>),
-    /// It has no such diagram to run.
-    Diagram(Words),
-}
+use studio::lint::unread;
+pub(crate) use studio::program::Unreadable;
 
 /// Reads a save.
 pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
@@ -49,10 +41,7 @@ pub(crate) fn must<T>(
             Unreadable::File(why) | Unreadable::Diagram(why) => {
                 vec![format!("trik: {}: {}", named(path), why.in_locale(locale))]
             }
-            Unreadable::Save(problems) => match flow::is_text(path) {
-                true => Reporter::of_unread_text(path, locale).lines(&problems),
-                false => Reporter::new(path, None, locale).lines(&problems),
-            },
+            Unreadable::Save(problems) => Reporter::of(path, unread(path), locale).lines(&problems),
         },
         code: UNREADABLE,
     })

@@ -58,38 +58,6 @@ pub(super) fn nothing_to_recover(locale: Locale) -> &'static str {
     }
 }
 
-/// A file in UTF-16.
-pub(super) fn utf_16() -> Words {
-    Words::new(
-        "this is a text in UTF-16; save it again in UTF-8",
-        "это текст в UTF-16; сохраните его снова в UTF-8",
-    )
-}
-
-/// A program in its textual form that is no text.
-pub(super) fn no_text(at: usize) -> Words {
-    Words::new(
-        format!("byte {at} is not UTF-8, so this is not a program as text"),
-        format!("байт {at} не в UTF-8, так что это не программа в виде текста"),
-    )
-}
-
-/// A byte of a world that is not UTF-8.
-pub(super) fn no_utf_8(at: usize) -> Words {
-    Words::new(
-        format!("byte {at} is not UTF-8; save the world as XML in UTF-8"),
-        format!("байт {at} не из UTF-8; сохраните мир как XML в UTF-8"),
-    )
-}
-
-/// A program where a diagram or a world should be.
-pub(super) fn is_program() -> Words {
-    Words::new(
-        "this is a program, and only diagrams (.qrs) and worlds (.xml) are looked at; 'trik check PROGRAM --field WORLD.xml' runs it",
-        "это программа, а проверяются диаграммы (.qrs) и миры (.xml); её запускает 'trik check ПРОГРАММА --field МИР.xml'",
-    )
-}
-
 /// Why a program as text is not taken where a world is changed.
 pub(super) fn only_saves() -> Words {
     Words::new(

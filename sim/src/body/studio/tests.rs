@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::field::{Robot, Sensor, Wall};
+use crate::show::field::PIXELS_IN_M;
 
 fn field() -> Field {
     let mut robot = Robot::default();

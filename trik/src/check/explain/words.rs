@@ -1,10 +1,10 @@
 //! What `trik check --explain` says, in English and Russian.
 
-use crate::check::verdict::Verdict;
 use crate::check::words::{choose, seconds};
 use lang_constraint::Kind;
 use lang_text::problem::Locale;
 use sim::judge::{Running, Spot};
+use studio::verdict::Verdict;
 
 /// Short names of units.
 pub(super) struct Units {

@@ -3,11 +3,11 @@
 //! Owns that form: one file without scripts; texts of files are never tags, and links lead only to files that are there.
 
 use super::{Grades, Run, number};
-use crate::check::verdict::Verdict;
 use crate::check::words;
 use lang_text::escape::escaped;
 use std::fmt::Write as _;
 use std::path::{Component, Path};
+use studio::verdict::Verdict;
 
 const STYLE: &str = "\
 :root { color-scheme: light dark; }

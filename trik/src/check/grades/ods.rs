@@ -4,12 +4,12 @@
 //! formulas; the only formulas are our own sums, so that a teacher who changes a cell sees the new sum.
 
 use super::{Grades, Run, number};
-use crate::check::verdict::Verdict;
 use crate::check::words;
 use lang_diagram::archive::{Entry, pack_document};
 use lang_text::escape::escaped;
 use lang_text::problem::Words;
 use std::fmt::Write as _;
+use studio::verdict::Verdict;
 
 const TYPE: &str = "application/vnd.oasis.opendocument.spreadsheet";
 /// Names of styles, and colours of cells.

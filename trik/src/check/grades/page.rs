@@ -3,11 +3,11 @@
 //! Owns that form. What is not judged yet counts nothing; points of a column may still change with the runs that come.
 
 use super::{Grades, Run};
-use crate::check::verdict::Verdict;
 use crate::check::words;
 use crate::terminal::harmless;
 use lang_text::problem::{Locale, Words};
 use page::marks::{Cell, Column, Mark, MarkTable, Row, Tone};
+use studio::verdict::Verdict;
 
 impl Grades {
     /// The table before the first run.

@@ -1,12 +1,12 @@
 //! How a run ended, with the kinds of failure told apart.
 //!
-//! Owns the kinds, their exit codes and their names in JSON. What people read of them is in `words`.
+//! Owns the kinds, their exit codes and their names in JSON. What people read of them is said by those who tell them.
 
 use sim::judge;
 
 /// How a run ended; a later one is worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Verdict {
+pub enum Verdict {
     /// The task was accomplished.
     Accomplished,
     /// There are no rules, and the program ended without an error.
@@ -24,7 +24,7 @@ pub(super) enum Verdict {
 }
 
 /// Kinds of ends, in the order of [`Verdict::ALL`].
-pub(super) type Counts = [usize; Verdict::ALL.len()];
+pub type Counts = [usize; Verdict::ALL.len()];
 
 impl Verdict {
     /// All of them, the best first.

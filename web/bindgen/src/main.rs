@@ -1,0 +1,26 @@
+//! Makes a package for browsers and Node of a compiled module: `bindgen MODULE.wasm OUT`.
+//!
+//! Owns the form of the package: modules of JavaScript with declarations for TypeScript, for every engine that has
+//! `fetch` or is given the bytes.
+
+use anyhow::{Context as _, bail};
+use wasm_bindgen_cli_support::Bindgen;
+
+fn main() -> anyhow::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let (Some(module), Some(out), None) = (arguments.next(), arguments.next(), arguments.next())
+    else {
+        bail!("usage: bindgen MODULE.wasm OUT");
+    };
+    let mut bindgen = Bindgen::new();
+    bindgen
+        .input_path(&module)
+        .out_name("studio")
+        .typescript(true)
+        .omit_default_module_path(false);
+    bindgen
+        .web(true)?
+        .remove_name_section(true)
+        .remove_producers_section(true);
+    bindgen.generate(&out).with_context(|| module)
+}

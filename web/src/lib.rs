@@ -1,0 +1,15 @@
+//! Projects of TRIK Studio in a browser: opened, looked through, shown, written as text, judged, run tick by tick and debugged.
+//!
+//! Owns the options of each request and the JSON that answers have. Values in, values out: no files, network, threads or
+//! clock; `bindings`, which exists in a browser alone, carries them to JavaScript and brings the clock. What is done is known
+//! in `studio`, `lang` and `sim`.
+
+#[cfg(target_family = "wasm")]
+mod bindings;
+pub mod failure;
+pub mod judged;
+pub mod limits;
+pub mod options;
+pub mod project;
+pub mod run;
+pub mod words;

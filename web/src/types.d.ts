@@ -1,0 +1,231 @@
+// The values of this package.
+
+/** Language of messages. */
+export type Locale = 'en' | 'ru';
+
+/** What a request came to. Nothing is thrown but mistakes of the package itself. */
+export type Answer<T> = { ok: true; value: T } | { ok: false; error: Failure };
+
+/**
+ * Why a request is not answered: `request` is a mistake of the code that asks, `unreadable` a damaged file, `diagram` a
+ * diagram that is not there, `program` and `world` mistakes in these.
+ */
+export interface Failure {
+  kind: 'request' | 'unreadable' | 'diagram' | 'program' | 'world';
+  /** The worst first. */
+  problems: Finding[];
+}
+
+/** Something that is wrong, as `trik lint --json` tells it. */
+export interface Finding {
+  file: string;
+  level: 'error' | 'warning' | 'note';
+  message: string;
+  /** The part of a save, as `worldModel`. */
+  part: string | null;
+  diagram: string | null;
+  /** The id of the block or link. */
+  object: string | null;
+  block: string | null;
+  property: string | null;
+  /** In the part or the property, from 1. */
+  line: number | null;
+  column: number | null;
+  /** In a file that is a text, from 1. */
+  fileLine?: number;
+  fileColumn?: number;
+}
+
+export interface LintOptions {
+  locale?: Locale;
+}
+
+export interface OpenOptions {
+  locale?: Locale;
+  /** The main diagram that is run, if it is not the first one. */
+  diagram?: string;
+}
+
+export interface ShowOptions {
+  locale?: Locale;
+  /** By its name; without it the main one. */
+  diagram?: string;
+  /** SVG, not sentences. */
+  picture?: boolean;
+  /** Say defaults of a data-flow program too. */
+  all?: boolean;
+}
+
+export interface GenerateOptions {
+  locale?: Locale;
+  /** Write crossing arrows as goto: in C and Lua. */
+  goto?: boolean;
+}
+
+/** Of a data-flow program `lua` and `c`, which become converters of trikfs. */
+export type Language = 'python' | 'javascript' | 'lua' | 'c' | 'pascal' | 'fsharp';
+
+export interface Generated {
+  text: string;
+  notes: Finding[];
+}
+
+/** What a project is. */
+export interface About {
+  name: string;
+  language: 'diagram' | 'dataflow';
+  diagrams: string[];
+  main: string | null;
+  hasWorld: boolean;
+}
+
+/** How a project is run; all as the options of `trik check`. */
+export interface RunOptions {
+  locale?: Locale;
+  /** The text of a world in XML, which takes the place of the project's own. */
+  field?: string;
+  /** Of everything random: 0 to 4294967295, 1 without it. */
+  seed?: number;
+  /** Longest run, in seconds of model time: 600 without it. */
+  modelSeconds?: number;
+  /** Longest run of `judge`, in seconds of real time: 60 without it. */
+  wallSeconds?: number;
+  /** Go on after the first failure. */
+  keepGoing?: boolean;
+  /** Let markers leave traces that sensors and rules see. */
+  markerTraces?: boolean;
+  /** Give the trajectory. */
+  trajectory?: boolean;
+  /** What a person answers when the program asks, in order. */
+  inputs?: string[];
+  /** What a person does with keys and gamepad, a line for each. */
+  gamepad?: string;
+  /** Run with a debugger; only for `run`. */
+  debug?: boolean;
+}
+
+/** What came out of a run. */
+export interface Judged {
+  verdict: 'accomplished' | 'ended' | 'failed' | 'broken';
+  failure: 'wrong' | 'model_time' | 'program' | 'structure' | 'not_run' | null;
+  /** Milliseconds of model time. */
+  ms: number;
+  totalScore: number | null;
+  messages: Message[];
+  /** Messages that are left out. */
+  more: number;
+  printed: string[];
+  /** What is strange in the world, or why nothing was run. */
+  strange: Finding[];
+  /** The files that `trik check --report` and `--trajectory` write. */
+  report: string;
+  trajectory: string | null;
+}
+
+/** Something that rules or the program said. */
+export interface Message {
+  level: 'info' | 'warning' | 'error' | 'log';
+  ms: number;
+  place: string;
+  text: string;
+}
+
+export interface News {
+  messages: Message[];
+  printed: string[];
+}
+
+/** `held`: a debugger holds it. */
+export type Progress = 'runs' | 'held' | 'over';
+
+/** Metres with x to the right and y up, degrees counter-clockwise. */
+export type Place = [x: number, y: number, degrees: number];
+
+/** Something that stands still. `is` says what the points are. */
+export interface Item {
+  is: 'line' | 'strokes' | 'curve' | 'rect' | 'ellipse' | 'wall' | 'text' | 'image';
+  /** x and y of each point in turn. */
+  points: number[];
+  stroke?: string;
+  width?: number;
+  dash?: number[];
+  fill?: string;
+  /** Of the colour inside, from 0 to 1. */
+  alpha?: number;
+  /** Of a text the text, of a picture its address. */
+  text?: string;
+}
+
+/** A robot as it is built; places are ahead of its centre and to the left. */
+export interface Shape {
+  /** Length and width. */
+  size: [number, number];
+  round: boolean;
+  wheels: { port: string; at: [number, number]; radius: number }[];
+  sensors: {
+    is: 'infrared' | 'sonar' | 'light' | 'touch' | 'camera' | 'lidar';
+    port: string;
+    at: [number, number];
+    degrees: number;
+    /** 0: it measures no distance. */
+    reach: number;
+    beam: number;
+  }[];
+}
+
+/** What stands still. */
+export interface Scene {
+  /** Left, bottom, right and top. */
+  bounds: [number, number, number, number];
+  /** Colour of the floor. */
+  floor: string;
+  /** The lowest first. */
+  items: Item[];
+  /** What markers have left: both ends and the colour. */
+  marks: [x: number, y: number, toX: number, toY: number, colour: string][];
+  things: { is: 'ball' | 'skittle' | 'cube'; size: number; colour: string }[];
+  /** Where the robot is. */
+  start: Place;
+  robots: Shape[];
+}
+
+/** A robot where it is. */
+export interface Placed {
+  at: Place;
+  /** By the sensors of its shape: metres, a share of dark, 1 for pressed; null: nothing is in reach, or nobody has asked. */
+  read: (number | null)[];
+  rays: (number | null)[];
+  stuck: boolean;
+  /** The colour of a marker that draws; empty if none does. */
+  marker: string;
+}
+
+/** Where a thread of the program is. */
+export interface Thread {
+  thread: string;
+  diagram: string;
+  /** The id of the block. */
+  id: string;
+  kind: string;
+  /** The block, for people. */
+  block: string;
+}
+
+/** What moves, and what the program does. */
+export interface State {
+  ms: number;
+  progress: Progress;
+  /** Power in percent, and degrees, by the port. */
+  motors: Record<string, number>;
+  /** The newest readings that program or rules have asked for. */
+  sensors: Record<string, number>;
+  variables: Record<string, string>;
+  threads: Thread[];
+  world: { t: number; robots: Placed[]; things: Place[] };
+}
+
+/** What a debugger answers: `done`, or `why` not. The rest is what `docs/user/debug.md` tells of orders. */
+export type DebugAnswer = { to: number; done: true; [name: string]: unknown } | { to: number; done: false; why: string };
+
+/** What a debugger tells by itself: its state, or lines of breakpoints. */
+export type DebugReport = Record<string, unknown>;
