@@ -11,7 +11,7 @@ use crate::node::Node;
 use crate::shape::is_whole;
 use crate::standard::Log;
 use crate::write::{FAULTS, Story};
-use mcap::records::{MessageHeader, Record, op};
+use mcap::records::{Channel, MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, Summary, WriteOptions};
 use std::cell::RefCell;
@@ -193,6 +193,13 @@ impl From<Error> for Stop {
     }
 }
 
+fn on_disk(error: mcap::McapError) -> Stop {
+    Stop::Disk(Error::writing(error))
+}
+
+/// Hears the nodes of a recording, once.
+type Begun = Box<dyn FnOnce(&[Node])>;
+
 struct Target<W: Write + Seek> {
     /// From the header on.
     out: Option<mcap::Writer<W>>,
@@ -202,7 +209,7 @@ struct Target<W: Write + Seek> {
     /// The message with which all was handed to the file the last time; None if nobody waits for that.
     flushed_ns: Option<u64>,
     /// Who hears the nodes that are known when the first message comes; None if nobody does, or it has come.
-    begun: Option<Box<dyn FnOnce(&[Node])>>,
+    begun: Option<Begun>,
     /// These nodes, while somebody is to hear them.
     nodes: Vec<Node>,
     /// Several recordings become one.
@@ -334,6 +341,58 @@ impl<W: Write + Seek> Target<W> {
         })
     }
 
+    fn take_channel(&mut self, channel: Channel) -> Result<(), Stop> {
+        let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
+            (0, _) => 0,
+            (_, Some(schema)) => *schema,
+            // It stood in a damaged part; maybe the summary knows the channel, when a message comes.
+            (_, None) => return Ok(()),
+        };
+        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
+            return Err(Stop::Damage(Error::NotARecording));
+        };
+        let id = declare(out, schema, &channel).map_err(on_disk)?;
+        if self.begun.is_some() {
+            let node = Node::of_channel(&channel.topic, &channel.metadata);
+            self.nodes.extend(node);
+        }
+        self.channels.insert(channel.id, (id, channel.topic));
+        Ok(())
+    }
+
+    fn take_message(
+        &mut self,
+        header: MessageHeader,
+        data: &[u8],
+        saved: &mut Saved,
+        is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
+    ) -> Result<(), Stop> {
+        if let Some(begun) = self.begun.take() {
+            begun(&std::mem::take(&mut self.nodes));
+        }
+        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
+            return Err(Stop::Damage(Error::NotARecording));
+        };
+        let known = self.known.as_ref();
+        if !knows(out, &mut self.channels, known, header.channel_id).map_err(on_disk)? {
+            // Others of its chunk may be known.
+            saved.note(Error::Damaged("an unknown channel".to_owned()), self.at);
+            saved.left_out += 1;
+            return Ok(());
+        }
+        let (id, topic) = &self.channels[&header.channel_id];
+        if is_wanted(topic, &header, data) {
+            let channel_id = *id;
+            let header = MessageHeader {
+                channel_id,
+                ..header
+            };
+            write(out, &header, data, &mut self.flushed_ns).map_err(on_disk)?;
+            saved.messages += 1;
+        }
+        Ok(())
+    }
+
     /// Copies a record. False after the last that is copied.
     fn take(
         &mut self,
@@ -342,7 +401,6 @@ impl<W: Write + Seek> Target<W> {
         saved: &mut Saved,
         is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<bool, Stop> {
-        let disk = |error| Stop::Disk(Error::writing(error));
         if !is_whole(opcode, data) {
             return Err(damaged("a length inside a record"));
         }
@@ -357,43 +415,11 @@ impl<W: Write + Seek> Target<W> {
         match record {
             Record::Schema { header, data } => {
                 let id = out.add_schema(&header.name, &header.encoding, &data);
-                self.schemas.insert(header.id, id.map_err(disk)?);
+                self.schemas.insert(header.id, id.map_err(on_disk)?);
             }
-            Record::Channel(channel) => {
-                let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
-                    (0, _) => 0,
-                    (_, Some(schema)) => *schema,
-                    // It stood in a damaged part; maybe the summary knows the channel, when a message comes.
-                    (_, None) => return Ok(true),
-                };
-                let id = declare(out, schema, &channel).map_err(disk)?;
-                if self.begun.is_some() {
-                    let node = Node::of_channel(&channel.topic, &channel.metadata);
-                    self.nodes.extend(node);
-                }
-                self.channels.insert(channel.id, (id, channel.topic));
-            }
+            Record::Channel(channel) => self.take_channel(channel)?,
             Record::Message { header, data } => {
-                if let Some(begun) = self.begun.take() {
-                    begun(&std::mem::take(&mut self.nodes));
-                }
-                let known = self.known.as_ref();
-                if !knows(out, &mut self.channels, known, header.channel_id).map_err(disk)? {
-                    // Others of its chunk may be known.
-                    saved.note(Error::Damaged("an unknown channel".to_owned()), self.at);
-                    saved.left_out += 1;
-                    return Ok(true);
-                }
-                let (id, topic) = &self.channels[&header.channel_id];
-                if is_wanted(topic, &header, &data) {
-                    let channel_id = *id;
-                    let header = MessageHeader {
-                        channel_id,
-                        ..header
-                    };
-                    write(out, &header, &data, &mut self.flushed_ns).map_err(disk)?;
-                    saved.messages += 1;
-                }
+                self.take_message(header, &data, saved, is_wanted)?;
             }
             Record::Attachment { header, data, .. } => {
                 let attachment = Attachment {
@@ -405,11 +431,11 @@ impl<W: Write + Seek> Target<W> {
                 };
                 // One that is there is there in each part.
                 if !self.joins || is_new(&mut self.attached, &attachment) {
-                    out.attach(&attachment).map_err(disk)?;
+                    out.attach(&attachment).map_err(on_disk)?;
                     saved.attachments += 1;
                 }
             }
-            Record::Metadata(metadata) => out.write_metadata(&metadata).map_err(disk)?,
+            Record::Metadata(metadata) => out.write_metadata(&metadata).map_err(on_disk)?,
             // The summary begins, which is made anew.
             Record::DataEnd(_) | Record::Footer(_) => return Ok(false),
             // Indexes are made anew; chunks were taken apart; what is unknown has no meaning here.

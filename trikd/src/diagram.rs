@@ -40,7 +40,9 @@ use nix::sys::time::TimeSpec;
 use robot::Robot;
 use source::Source;
 use std::cell::Cell;
+use std::fs::OpenOptions;
 use std::io::{self, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -171,7 +173,15 @@ fn read_save(path: &Path) -> Result<Vec<u8>, NoDiagram> {
     let failed = |error: io::Error| NoDiagram::Unread(error.into());
     let limit = lang_diagram::limits::SAVE_BYTES as u64;
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
+    // A pipe would be waited for.
+    let file = OpenOptions::new()
+        .read(true)
+        .custom_flags(libc::O_NONBLOCK)
+        .open(path)
+        .map_err(failed)?;
+    if !file.metadata().map_err(failed)?.is_file() {
+        return Err(failed(io::ErrorKind::InvalidInput.into()));
+    }
     file.take(limit + 1)
         .read_to_end(&mut bytes)
         .map_err(failed)?;

@@ -252,6 +252,12 @@ pub const DATAGRAM_NUMBERS: usize = 512;
 /// Numbers of one picture that a program shows, three for each pixel at most.
 pub const SHOWN_NUMBERS: usize = 3 << 20;
 
+/// Texts of a version that is prepared beside a running program: what is made of them takes up to 300 times as much memory, of
+/// which a program may have 256 MiB.
+pub const VERSION_BYTES: usize = 640 << 10;
+/// What a block without a text counts there.
+pub const VERSION_BLOCK_BYTES: usize = 12;
+
 /// How long a diagram whose next step is late hears what is asked for, in milliseconds: a change that takes longer is the
 /// only one before that step.
 pub const HEARING_MS: u64 = 5;

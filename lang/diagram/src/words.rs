@@ -420,6 +420,14 @@ pub(super) fn empty_braces() -> Words {
     )
 }
 
+/// What a person assigns is no number that a program can compute with.
+pub(super) fn not_finite(variable: &str) -> Words {
+    Words::new(
+        format!("{variable} would be infinite or no number, and motors and waits need one"),
+        format!("{variable} станет бесконечностью или не числом, а моторам и таймерам нужно число"),
+    )
+}
+
 pub(super) fn assigns() -> Words {
     Words::new(
         "An expression that is only looked at cannot assign; == compares",

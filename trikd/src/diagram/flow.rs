@@ -375,6 +375,10 @@ fn prepared(path: &Path, own: Locale, locale: Locale) -> Result<Prepared<Source>
     let name = live::name(path);
     let source = Source::open(path, locale)
         .map_err(|why| Answer::unchanged(&name, &why.in_locale(locale)))?;
+    let sheets = source.project.diagrams.iter();
+    let blocks = sheets.flat_map(|sheet| &sheet.blocks);
+    live::fits(blocks.map(|block| &block.properties))
+        .map_err(|why| Answer::unchanged(&name, why.in_locale(locale)))?;
     let found = Version::mistakes(&source.project)
         .map_err(|why| Answer::unchanged(&name, &explained(&why, &source, locale)))?;
     let all = [&source.problems[..], &found].concat();

@@ -4,6 +4,7 @@
 //! here touches a device.
 
 use super::watch::Watch;
+use super::words;
 use super::{opened, read_save};
 use crate::limits;
 use crate::protocol::news;
@@ -12,7 +13,8 @@ use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::{Refused, Version, WhenGone};
 use lang_diagram::project::Project;
-use lang_text::problem::{Locale, Severity};
+use lang_text::problem::{Locale, Severity, Words};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A version that may replace what runs.
@@ -64,6 +66,10 @@ pub(super) fn prepared(
     let name = name(path);
     let save = read_save(path).and_then(|bytes| opened(&bytes, locale));
     let save = save.map_err(|why| Answer::unchanged(&name, &why.in_locale(locale)))?;
+    let sheets = save.project.diagrams.iter();
+    let blocks = sheets.flat_map(|sheet| &sheet.blocks);
+    fits(blocks.map(|block| &block.properties))
+        .map_err(|why| Answer::unchanged(&name, why.in_locale(locale)))?;
     let checked = Version::mistakes(&save.project, World::Robot);
     let found = checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
     let shown = save.problems.iter().chain(&found);
@@ -73,6 +79,22 @@ pub(super) fn prepared(
         warnings: warnings.collect(),
         source: save.project,
     })
+}
+
+/// Whether blocks with these properties fit into the program beside what runs: there is no way back from an allocation that
+/// fails.
+///
+/// # Errors
+/// What a person is told.
+pub(super) fn fits<'a>(
+    blocks: impl Iterator<Item = &'a BTreeMap<String, String>>,
+) -> Result<(), Words> {
+    let texts = blocks.map(|texts| texts.values().map(String::len).sum::<usize>());
+    let bytes: usize = texts.map(|text| text + limits::VERSION_BLOCK_BYTES).sum();
+    match bytes > limits::VERSION_BYTES {
+        true => Err(words::long_version(bytes)),
+        false => Ok(()),
+    }
 }
 
 /// Replaces the program that runs by a project that is prepared, whole or not at all; the answer is in this language.

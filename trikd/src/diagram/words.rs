@@ -55,6 +55,19 @@ pub(super) fn other_language() -> Words {
     )
 }
 
+/// Why a version that counts so many bytes does not replace what runs.
+pub(super) fn long_version(bytes: usize) -> Words {
+    let (have, most) = (bytes >> 10, limits::VERSION_BYTES >> 10);
+    Words::new(
+        format!(
+            "its blocks and their texts have {have} KiB, and beside a program that runs {most} KiB can be prepared: end that, and start the new one"
+        ),
+        format!(
+            "в его блоках с их текстами {have} КиБ, а рядом с работающей программой можно подготовить {most} КиБ: завершите её и запустите новую"
+        ),
+    )
+}
+
 /// Why a version whose checks ended their thread does not replace what runs.
 pub(super) fn not_prepared() -> Words {
     Words::new(

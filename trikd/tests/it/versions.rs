@@ -154,3 +154,27 @@ fn what_is_strange_about_a_version_is_told_once() {
     assert_eq!(told("n = n + 1"), [""; 0]);
     assert_eq!(told("n = n + 99999999999"), first);
 }
+
+#[test]
+fn a_version_that_would_take_all_memory_is_refused_and_the_program_goes_on() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    while printed(&mut client) < 2 {}
+    let mut sketch = Sketch::new();
+    let long = "m = m + 1\n".repeat(6000);
+    let blocks: Vec<_> = (0..25)
+        .map(|_| sketch.block("Function", &[("Body", &long)]))
+        .collect();
+    sketch.chain(&blocks);
+    let save = sketch.qrs().expect("a save");
+    assert!(save.len() < 200_000, "it is packed well");
+    upload(&mut client, "count.qrs", &save);
+    client.send("patch:end:count.qrs");
+    let told = client.until("error: count.qrs is not changed: ");
+    assert!(told.contains("640 KiB can be prepared"), "{told}");
+    let before = printed(&mut client);
+    while printed(&mut client) < before + 3 {}
+    client.send("stop");
+}

@@ -492,6 +492,8 @@ fn looking_changes_nothing_and_assigning_does() {
         ("step; n", "1"),
         ("step", "1; n = 5"),
         ("step", "1 / 0"),
+        ("step", "1e999"),
+        ("step", "sqrt(0 - 1)"),
         ("", "1"),
         ("step", ""),
     ] {

@@ -286,6 +286,11 @@ impl Machine {
         let statement = format!("{opening}{text})");
         let (tried, _) = self.tried(&opening, &statement);
         let formulas = tried?;
+        if let Some(Value::Float(number)) = formulas.get(variable)
+            && !number.is_finite()
+        {
+            return Err(vec![Problem::error(words::not_finite(variable))]);
+        }
         let env = &mut Env { brick, trace };
         let now = self.now;
         self.formulas = formulas;
