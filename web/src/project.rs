@@ -139,7 +139,7 @@ impl Project {
             return main.ok_or_else(|| Failure::Diagram(words::no_diagrams()));
         };
         all.iter().position(|one| *one == name).ok_or_else(|| {
-            let near = did_you_mean(name, all.into_iter());
+            let near = did_you_mean(name, all);
             Failure::Diagram(words::no_diagram(name, &near))
         })
     }
