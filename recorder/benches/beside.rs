@@ -185,66 +185,66 @@ fn main() {
     let open = |name: &&str| File::open(root.join(name)).expect("a node of the robot");
     let files: Vec<File> = READ.iter().map(open).collect();
     for is_standard in [true, false] {
-        let (mut alone, mut beside, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-        let mut done = Vec::new();
-        let begin = Instant::now();
-        // What every recording begins with: types, channels, configuration, the newest of each node.
-        let first = Recorder::start(&root, folder.path().join("first.mcap"), is_standard).end();
-        for turn in 0..PAIRS {
-            let recorder = |turn: usize| {
-                Recorder::start(
-                    &root,
-                    folder.path().join(format!("{turn}.mcap")),
-                    is_standard,
-                )
-            };
-            // Which comes first changes, so that a trend meets both.
-            let (without, with) = if turn % 2 == 0 {
-                let without = read_us(&files);
-                let recorder = recorder(turn);
-                let with = read_us(&files);
-                done.push(recorder.end());
-                (without, with)
-            } else {
-                let recorder = recorder(turn);
-                let with = read_us(&files);
-                done.push(recorder.end());
-                (read_us(&files), with)
-            };
-            alone.push(without);
-            beside.push(with);
-            ratios.push(with / without);
-        }
-        let all_s = WINDOW.as_secs_f64() * done.len() as f64;
-        let sum = |of: fn(&Done) -> f64| done.iter().map(of).sum::<f64>();
-        let lost: u64 = done.iter().map(|done| done.lost).sum();
-        let nodes = done.iter().map(|done| done.nodes).max().unwrap_or(0);
-        let events = sum(|done| done.events as f64) / all_s;
-        let what = match is_standard {
-            true => "with messages of standard types",
-            false => "with those of nodes alone",
-        };
-        let took_s = begin.elapsed().as_secs_f64();
-        println!("{nodes} nodes, {events:.0} events/s, {lost} lost, {what}, {took_s:.0} s in all");
-        line(
-            "  processor",
-            sum(|done| done.cpu_s) / all_s * 100.0,
-            "%",
-            2.0,
-        );
-        line(
-            "  file",
-            (sum(|done| done.bytes) - first.bytes * done.len() as f64) / all_s / 1e3,
-            "KB/s",
-            60.0,
-        );
-        let most = memory_of_one(&root, is_standard);
-        line("  memory at most", most / 1e6, "MB", 1.0);
-        println!(
-            "  a read takes {:.1} us alone, {:.1} us beside it",
-            median(&mut alone),
-            median(&mut beside)
-        );
-        line("  that is", median(&mut ratios), "times", 1.05);
+        measure(&root, folder.path(), &files, is_standard);
     }
+}
+
+/// All figures of one sort of messages.
+fn measure(root: &Path, folder: &Path, files: &[File], is_standard: bool) {
+    let (mut alone, mut beside, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    let mut done = Vec::new();
+    let begin = Instant::now();
+    // What every recording begins with: types, channels, configuration, the newest of each node.
+    let first = Recorder::start(root, folder.join("first.mcap"), is_standard).end();
+    for turn in 0..PAIRS {
+        let recorder =
+            |turn: usize| Recorder::start(root, folder.join(format!("{turn}.mcap")), is_standard);
+        // Which comes first changes, so that a trend meets both.
+        let (without, with) = if turn % 2 == 0 {
+            let without = read_us(files);
+            let recorder = recorder(turn);
+            let with = read_us(files);
+            done.push(recorder.end());
+            (without, with)
+        } else {
+            let recorder = recorder(turn);
+            let with = read_us(files);
+            done.push(recorder.end());
+            (read_us(files), with)
+        };
+        alone.push(without);
+        beside.push(with);
+        ratios.push(with / without);
+    }
+    let all_s = WINDOW.as_secs_f64() * done.len() as f64;
+    let sum = |of: fn(&Done) -> f64| done.iter().map(of).sum::<f64>();
+    let lost: u64 = done.iter().map(|done| done.lost).sum();
+    let nodes = done.iter().map(|done| done.nodes).max().unwrap_or(0);
+    let events = sum(|done| done.events as f64) / all_s;
+    let what = match is_standard {
+        true => "with messages of standard types",
+        false => "with those of nodes alone",
+    };
+    let took_s = begin.elapsed().as_secs_f64();
+    println!("{nodes} nodes, {events:.0} events/s, {lost} lost, {what}, {took_s:.0} s in all");
+    line(
+        "  processor",
+        sum(|done| done.cpu_s) / all_s * 100.0,
+        "%",
+        2.0,
+    );
+    line(
+        "  file",
+        (sum(|done| done.bytes) - first.bytes * done.len() as f64) / all_s / 1e3,
+        "KB/s",
+        60.0,
+    );
+    let most = memory_of_one(root, is_standard);
+    line("  memory at most", most / 1e6, "MB", 1.0);
+    println!(
+        "  a read takes {:.1} us alone, {:.1} us beside it",
+        median(&mut alone),
+        median(&mut beside)
+    );
+    line("  that is", median(&mut ratios), "times", 1.05);
 }

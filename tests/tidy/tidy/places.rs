@@ -329,7 +329,7 @@ fn what_goes_wrong_is_no_text() {
 }
 
 /// What makes a folder or a file of its own below the temporary one, as a path and why `tempfile` is not for it.
-const OWN_FOLDERS: [(&str, &str); 11] = [
+const OWN_FOLDERS: [(&str, &str); 12] = [
     (
         "lang/dcml/benches/generated.rs",
         "a measured program, which stays",
@@ -365,6 +365,10 @@ const OWN_FOLDERS: [(&str, &str); 11] = [
         "the product: where caches are without a home",
     ),
     ("tests/tidy/tidy/places.rs", "this rule"),
+    (
+        "trik/src/replay.rs",
+        "makes a file without a name there, and errors name the folder",
+    ),
 ];
 
 /// Generators of random numbers that are not `needs::Random`, as a path and why.
