@@ -3,8 +3,9 @@
 #
 # usage: web/build.sh OUT
 #
-# OUT is a folder; what it had of an earlier package is replaced. Needs cargo and rustup. The standard library for
-# WebAssembly comes from rustup; where that has none, TRIK_WEB_STD=debian takes compiler and sources of cross/toolchain.sh.
+# OUT is a folder; what it had of an earlier package is replaced. Needs cargo. The standard library for WebAssembly comes
+# from rustup, or where that cannot have it, from the sources of the compiler of cross/toolchain.sh; TRIK_WEB_STD=rustup or
+# debian names one of these.
 # Everything else that is made stands below target/web.
 set -euo pipefail
 . "$(dirname "$0")/../cross/lib.sh"
@@ -25,23 +26,35 @@ web_cargo() {
         CARGO_TARGET_DIR="$built" cargo --config web/cargo.toml "$@")
 }
 
+# Whether rustup has the standard library, or can have it.
+of_rustup() {
+    command -v rustup >/dev/null && (cd "$root" && rustup target add "$wasm") >/dev/null 2>&1
+}
+
 build_module() {
     local arguments=(build --locked -p web --target "$wasm" --profile web)
-    case ${TRIK_WEB_STD:-rustup} in
+    case ${TRIK_WEB_STD:-any} in
+    any)
+        if of_rustup; then
+            web_cargo "${arguments[@]}"
+        else
+            say "rustup has no standard library for $wasm here: the compiler of the cross build makes it"
+            by_debian "${arguments[@]}"
+        fi
+        ;;
     rustup)
-        (cd "$root" && rustup target add "$wasm") >/dev/null 2>&1 ||
-            die "rustup has no standard library for $wasm here" "is the network there? TRIK_WEB_STD=debian builds it from Debian's sources"
+        of_rustup || die "rustup has no standard library for $wasm here" "is the network there? TRIK_WEB_STD=debian builds it"
         web_cargo "${arguments[@]}"
         ;;
-    debian)
-        need_toolchain
-        RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 web_cargo "${arguments[@]}" -Zbuild-std=std,panic_abort \
-            --config "target.$wasm.linker='$(rust_lld)'"
-        ;;
-    *)
-        die "TRIK_WEB_STD is rustup or debian"
-        ;;
+    debian) by_debian "${arguments[@]}" ;;
+    *) die "TRIK_WEB_STD is rustup or debian" ;;
     esac
+}
+
+by_debian() {
+    need_toolchain
+    RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 web_cargo "$@" -Zbuild-std=std,panic_abort \
+        --config "target.$wasm.linker='$(rust_lld)'"
 }
 
 # The linker of the toolchain that builds for this computer: Debian's compiler has none.
