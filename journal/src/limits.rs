@@ -12,8 +12,9 @@ pub const FORMAT_BYTES_MAX: usize = 128 << 10;
 pub const NODES_MAX: usize = 8192;
 /// Bytes of a reason or a line of the log.
 pub const TEXT_BYTES_MAX: usize = 8 << 10;
-/// Bytes that are compressed together: small, so that little is lost and little is decompressed to find one message.
-pub const CHUNK_BYTES: u64 = 64 << 10;
+/// Bytes that are compressed together. A chunk begins with nothing known, so smaller ones make a file larger; larger ones take
+/// more memory of a recorder, more of them is lost by damage, and more is decompressed to find one message.
+pub const CHUNK_BYTES: u64 = 128 << 10;
 /// Bytes of one record that a reader takes: a chunk may be one tuple long, and what frames it.
 pub const RECORD_BYTES_MAX: usize = 16 << 20;
 /// Bytes of one attachment that a reader takes.

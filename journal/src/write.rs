@@ -211,6 +211,11 @@ impl<W: Write + Seek> Writer<W> {
         Ok(Id(self.nodes.len() - 1))
     }
 
+    /// The form of the tuples of a node.
+    pub fn layout(&self, node: Id) -> &Layout {
+        &self.nodes[node.0].layout
+    }
+
     /// A sample of a node.
     ///
     /// # Errors
@@ -221,7 +226,8 @@ impl<W: Write + Seek> Writer<W> {
         let message = node::encode(&channel.path, &channel.layout, unix_ns, sequence, tuple)?;
         channel.sequence = sequence;
         let id = channel.id;
-        self.message(id, sequence, unix_ns, &message)
+        // The message counts itself; a second counter beside it would be compressed badly.
+        self.message(id, 0, unix_ns, &message)
     }
 
     /// A topic with messages of a standard type from now on; its name begins with `/`.

@@ -43,7 +43,7 @@ impl<W: Write + Seek> Pen<W> {
         if let Some(standard) = &mut self.standard
             && !known.node.is_raw
         {
-            standard.meet(known);
+            standard.meet(known, id, &self.file);
         }
         Ok(id)
     }

@@ -18,7 +18,7 @@ use journal::standard::robot::{
     BatteryState, CompressedImage, Imu, JointState, Joy, LaserScan, Message, Odometry, Range,
     Transforms,
 };
-use journal::write::{Topic, Writer};
+use journal::write::{Id, Topic, Writer};
 use pose::{Place, Track};
 use rows::Role;
 pub use rows::place_units;
@@ -62,7 +62,8 @@ impl<M: Message> Sinks<M> {
 /// A node that is a standard message, or a part of one.
 struct Part {
     path: String,
-    layout: Layout,
+    /// It in the recording, which has the form of its tuples.
+    id: Id,
     role: Role,
     /// The numbers that bring it to rest; empty for what needs none.
     rest: Vec<f64>,
@@ -84,8 +85,8 @@ impl Part {
     }
 
     /// The numbers of a tuple; None if one of them is none.
-    fn numbers(&self, tuple: &[u8]) -> Option<Vec<f64>> {
-        let numbers = self.layout.numbers(tuple);
+    fn numbers<W: Write + Seek>(&self, file: &Writer<W>, tuple: &[u8]) -> Option<Vec<f64>> {
+        let numbers = file.layout(self.id).numbers(tuple);
         let numbers: Vec<f64> = numbers.into_iter().map(Number::to_f64).collect();
         let are_good = !numbers.is_empty() && numbers.iter().all(|number| number.is_finite());
         are_good.then_some(numbers)
@@ -129,7 +130,7 @@ pub(crate) struct Standard {
 
 impl Standard {
     /// Learns what a node is; all nodes of a group should be known before the first sample of one of them.
-    pub(crate) fn meet(&mut self, known: &Known) {
+    pub(crate) fn meet<W: Write + Seek>(&mut self, known: &Known, id: Id, file: &Writer<W>) {
         if self.parts.contains_key(&known.number) {
             return;
         }
@@ -138,7 +139,7 @@ impl Standard {
             // Its format has changed: it may be something else now.
             self.forget(before);
         }
-        let found = part(known);
+        let found = part(known, id, file.layout(id));
         if let Some(part) = &found {
             self.join(known.number, part);
         }
@@ -228,7 +229,7 @@ impl Standard {
                 None => Ok(()),
             };
         }
-        let Some(numbers) = part.numbers(tuple) else {
+        let Some(numbers) = part.numbers(file, tuple) else {
             self.fault(known);
             return Ok(());
         };
@@ -396,15 +397,14 @@ impl Halves {
     }
 }
 
-fn part(known: &Known) -> Option<Arc<Part>> {
+fn part(known: &Known, id: Id, layout: &Layout) -> Option<Arc<Part>> {
     let node = &known.node;
-    let layout = Layout::parse(&node.format).ok()?;
-    let role = rows::role(node, &layout)?;
+    let role = rows::role(node, layout)?;
     let rest = node.rest.split_whitespace().map(str::parse);
     Some(Arc::new(Part {
         path: node.path.clone(),
         rest: rest.collect::<Result<_, _>>().unwrap_or_default(),
-        layout,
+        id,
         role,
     }))
 }
