@@ -6,8 +6,8 @@
 
 use crate::engine::Engine;
 use crate::events::lock;
-use std::sync::{Mutex, OnceLock};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 /// What the kernel keeps of one file.
 #[derive(Default)]
