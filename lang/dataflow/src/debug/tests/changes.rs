@@ -306,7 +306,7 @@ fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
         let answer = told(&mut desk, order);
         assert!(answer.contains("\"done\":false"), "{order}: {answer}");
         assert!(answer.contains("has ended"), "{order}: {answer}");
-        assert!(answer.contains("start it again"), "{order}: {answer}");
+        assert!(answer.contains("begin anew"), "{order}: {answer}");
     }
     assert_eq!(desk.assign("n", "4"), Err(NotNow::Ended));
     let n = told(&mut desk, "evaluate n");
@@ -320,7 +320,7 @@ fn a_program_that_has_ended_takes_no_values_and_stops_in_its_past() {
         back.contains("\"reason\":\"breakpoint\",\"number\":1"),
         "{back}"
     );
-    assert!(told(&mut desk, "set n=4").contains("this is the past"));
+    assert!(told(&mut desk, "set n=4").contains("looks at the past"));
 }
 
 #[test]

@@ -165,11 +165,11 @@ fn an_instant_back_and_a_time_and_the_first_moment_are_found() {
     assert!(state.contains("\"reason\":\"oldest\""), "{state}");
     assert_eq!(here(&desk), moments[0]);
     assert!(told(&mut desk, "back to 100000").contains("has not come to that time"));
-    assert!(told(&mut desk, "set n=3").contains("this is the past"));
+    assert!(told(&mut desk, "set n=3").contains("looks at the past"));
     // Nor does who assigns without the debugger.
     let assigned = desk.assign("n", "3");
     assert!(matches!(assigned, Err(crate::debug::NotNow::Past)));
-    assert!(told(&mut desk, "until qrm:/main/M").contains("this is the past"));
+    assert!(told(&mut desk, "until qrm:/main/M").contains("looks at the past"));
     assert!(
         told(&mut desk, "evaluate n + 1").contains("\"done\":false"),
         "n has no value there"
