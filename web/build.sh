@@ -53,8 +53,8 @@ build_module() {
 
 by_debian() {
     need_toolchain
-    RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 web_cargo "$@" -Zbuild-std=std,panic_abort \
-        --config "target.$wasm.linker='$(rust_lld)'"
+    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$(rust_lld) RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 \
+        web_cargo "$@" -Zbuild-std=std,panic_abort
 }
 
 # The linker of the toolchain that builds for this computer: Debian's compiler has none.
