@@ -54,8 +54,9 @@ unit() {
     export PROPTEST_CASES=${PROPTEST_CASES:-32}
     say "unit tests"
     # The template in Rust would be built for the PC. The emulator has an errno of its own for an ioctl that it does not
-    # know, and tells of a program that is missing only by its exit code.
-    unit_tests -- --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
+    # know, and tells of a program that is missing only by its exit code. A program of several threads that starts another one
+    # hangs in it now and then: 5 of 100 runs of the converters' tests did, and none of 150 of one test after the other.
+    RUST_TEST_THREADS=1 unit_tests -- --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
         --skip a_program_that_is_missing_is_named "$@"
     say "programs of data flow do the same here, to the letter"
     local chosen=("$@")
