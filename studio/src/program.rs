@@ -11,7 +11,7 @@ use lang_dataflow::save::save;
 use lang_dataflow::text::Places;
 use lang_dataflow::{program, text};
 use lang_diagram::read::{self, Opened, Save};
-use lang_text::problem::{Locale, Place, Position, Problem, Severity, Words};
+use lang_text::problem::{Locale, Position, Problem, Severity, Words};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -141,18 +141,7 @@ pub fn of_save(opened: Opened) -> Program {
 pub fn unread(file: &Path, problems: &[Problem], locale: Locale) -> Vec<String> {
     let line = |problem: &Problem| match problem.place.position.filter(|_| is_text(file)) {
         None => line(file, None, problem, locale),
-        at => {
-            // The line begins with it.
-            let place = Place {
-                position: None,
-                ..problem.place.clone()
-            };
-            let problem = Problem {
-                place,
-                ..problem.clone()
-            };
-            line(file, at, &problem, locale)
-        }
+        at => line(file, at, &problem.without_position(), locale),
     };
     problems.iter().map(line).collect()
 }

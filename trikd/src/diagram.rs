@@ -46,7 +46,7 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
-use versions::Versions;
+use versions::{Asked, Change, Versions};
 use watch::Watch;
 
 /// Runs diagrams.
@@ -317,10 +317,17 @@ fn hear(
         Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-        change @ (Incoming::Patch(..) | Incoming::Set(..)) => {
-            if let Some(change) = versions.keep(change) {
-                begin_change(change, now, (diagram, robot, watch), versions, host)?;
-            }
+        Incoming::Patch(when_gone, path, locale) => {
+            versions.ask(Change::Version(Asked {
+                when_gone,
+                path,
+                locale,
+            }));
+            assign_due(versions, now, (diagram, robot, watch), host)?;
+        }
+        Incoming::Set(text, locale) => {
+            versions.ask(Change::Set(text, locale));
+            assign_due(versions, now, (diagram, robot, watch), host)?;
         }
         Incoming::Debug {
             client,
@@ -344,71 +351,53 @@ fn hear(
     Ok(())
 }
 
-/// Begins to prepare a new version, or does another change at once.
-fn begin_change(
-    change: Incoming,
+/// Assigns what is due. A version that is due begins to be prepared.
+fn assign_due(
+    versions: &mut Versions<Project>,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
-    versions: &mut Versions<Project>,
     host: &Host,
 ) -> io::Result<()> {
-    match change {
-        Incoming::Patch(when_gone, path, locale) => {
-            versions.begin(when_gone, path, locale);
-            Ok(())
-        }
-        Incoming::Set(text, locale) => {
-            let (session, mut driven) = diagram.parts(robot);
-            let answer = live::set(session, (&text, locale), &mut driven, watch);
-            tell_change(&answer, now, diagram, host)
-        }
-        // Nothing else is a change.
-        Incoming::Direct(_)
-        | Incoming::Mail(..)
-        | Incoming::Web
-        | Incoming::Watch(_)
-        | Incoming::Debug { .. }
-        | Incoming::DebugLeft
-        | Incoming::Reply(..)
-        | Incoming::Gone => Ok(()),
+    while let Some((text, locale)) = versions.next() {
+        let (session, mut driven) = diagram.parts(robot);
+        let answer = live::set(session, (&text, locale), &mut driven, watch);
+        host.changed(answer.is_changed, &answer.text)?;
+        tell_change(now, diagram, host)?;
     }
+    Ok(())
 }
 
-/// Puts a version into force that is prepared, and begins what was asked for after it.
+/// Puts a version into force that is prepared, and does what was asked for after it.
 fn take_version(
     versions: &mut Versions<Project>,
     now: u32,
     (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
     host: &Host,
 ) -> io::Result<()> {
-    if let Some(ready) = versions.ready() {
-        let (answer, warnings) = match ready.version {
-            Ok(Prepared { source, warnings }) => {
-                let (session, mut driven) = diagram.parts(robot);
-                let version = (ready.when_gone, &*ready.name, &source, ready.locale);
-                let answer = live::patch(session, version, &mut driven, watch);
-                (answer, warnings)
-            }
-            Err(answer) => (answer, Vec::new()),
-        };
-        if answer.is_changed {
-            watch.tell_warnings(warnings, host);
+    let Some(ready) = versions.ready() else {
+        return Ok(());
+    };
+    let (answer, warnings) = match ready.version {
+        Ok(Prepared { source, warnings }) => {
+            let (session, mut driven) = diagram.parts(robot);
+            let version = (ready.when_gone, &*ready.name, &source, ready.locale);
+            let answer = live::patch(session, version, &mut driven, watch);
+            (answer, warnings)
         }
-        tell_change(&answer, now, diagram, host)?;
+        Err(answer) => (answer, Vec::new()),
+    };
+    if answer.is_changed {
+        watch.tell_warnings(warnings, host);
     }
-    while let Some(change) = versions.next() {
-        begin_change(change, now, (diagram, robot, watch), versions, host)?;
+    for _ in 0..ready.count {
+        host.changed(answer.is_changed, &answer.text)?;
     }
-    Ok(())
+    tell_change(now, diagram, host)?;
+    assign_due(versions, now, (diagram, robot, watch), host)
 }
 
-fn tell_change(
-    answer: &live::Answer,
-    now: u32,
-    diagram: &mut Debugging,
-    host: &Host,
-) -> io::Result<()> {
-    host.changed(answer.is_changed, &answer.text)?;
+/// Something of the program has been changed, or was not.
+fn tell_change(now: u32, diagram: &mut Debugging, host: &Host) -> io::Result<()> {
     diagram.changed();
     diagram.report(now, true, host)
 }

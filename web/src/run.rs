@@ -305,12 +305,9 @@ fn thread(one: &Running, locale: Locale) -> Value {
             diagram,
             id,
             kind,
-            caption: [english, russian],
+            caption,
         } => {
-            let caption = match locale {
-                Locale::English => english,
-                Locale::Russian => russian,
-            };
+            let caption = caption.in_locale(locale);
             json!({"thread": one.thread, "diagram": diagram, "id": id, "kind": kind, "block": caption})
         }
         Spot::Line { file, line, .. } => {

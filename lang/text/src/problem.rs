@@ -166,6 +166,14 @@ impl Problem {
         }
     }
 
+    /// The same without its position, for a line that begins with another one.
+    #[must_use]
+    pub fn without_position(&self) -> Self {
+        let mut problem = self.clone();
+        problem.place.position = None;
+        problem
+    }
+
     /// The problem in one line, in both languages.
     pub fn in_both(&self) -> Words {
         Words::new(

@@ -12,7 +12,7 @@ use lang_dataflow::program::{NodeId, Program as Lowered};
 use lang_diagram::brick::Brick;
 use lang_diagram::limits::HISTORY_BYTES;
 use lang_diagram::machine::Status;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use std::rc::Rc;
 
 /// A data-flow program. It has no threads: what it did last is the block that reacted last.
@@ -104,8 +104,8 @@ impl Program for Dataflow {
                     kind: node.row.element.to_owned(),
                     // A person knows a block by its label; the type stands beside it.
                     caption: match node.caption.is_empty() {
-                        true => [node.row.shown.to_owned(), node.row.russian.to_owned()],
-                        false => [node.caption.to_string(), node.caption.to_string()],
+                        true => Words::new(node.row.shown, node.row.russian),
+                        false => Words::new(&*node.caption, &*node.caption),
                     },
                 },
             }

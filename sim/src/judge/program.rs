@@ -9,7 +9,7 @@ use lang_diagram::machine::trace::{Deaf, Trace};
 use lang_diagram::machine::{Machine, Options, Status};
 use lang_diagram::ports::Port;
 use lang_diagram::program::{Node, Program as Lowered};
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use std::rc::Rc;
 
 use super::track::Group;
@@ -83,7 +83,7 @@ pub enum Spot {
         /// Its type, as `Timer`.
         kind: String,
         /// Its name in the editor, in English and Russian.
-        caption: [String; 2],
+        caption: Words,
     },
     /// The line of a text at which it waited, or asked the robot, last.
     Line {
@@ -223,10 +223,10 @@ fn running(program: &Lowered, thread: &str, ended_ms: Option<u32>, node: Node) -
             diagram: text(program.diagram(node)),
             id: text(program.id(node)),
             kind: text(row.map(|row| row.kind)),
-            caption: [
+            caption: Words::new(
                 text(row.map(|row| row.shown)),
                 text(row.map(|row| row.russian)),
-            ],
+            ),
         },
     }
 }

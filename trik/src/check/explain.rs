@@ -193,12 +193,9 @@ fn thread_json(one: &Running, locale: Locale) -> Value {
             diagram,
             id,
             kind,
-            caption: [english, russian],
+            caption,
         } => {
-            let caption = match locale {
-                Locale::English => english,
-                Locale::Russian => russian,
-            };
+            let caption = caption.in_locale(locale);
             json!({
                 "thread": one.thread,
                 "ended_ms": one.ended_ms,

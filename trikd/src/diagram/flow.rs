@@ -7,7 +7,7 @@ use super::live::{self, Answer, Prepared};
 use super::motors::Motors;
 use super::robot::Robot;
 use super::source::Source;
-use super::versions::{Ready, Versions};
+use super::versions::{Asked, Change, Ready, Versions};
 use super::watch::Watch;
 use super::{hear_until, next_step, since};
 use crate::engine::{Failure, Outcome};
@@ -238,10 +238,17 @@ impl Flow {
                 watch.set_wanted(is_wanted);
                 self.keep_diary(is_wanted);
             }
-            change @ (Incoming::Patch(..) | Incoming::Set(..)) => {
-                if let Some(change) = self.versions.keep(change) {
-                    self.begin_change(change, now, host)?;
-                }
+            Incoming::Patch(when_gone, path, locale) => {
+                self.versions.ask(Change::Version(Asked {
+                    when_gone,
+                    path,
+                    locale,
+                }));
+                self.assign_due(now, host)?;
+            }
+            Incoming::Set(text, locale) => {
+                self.versions.ask(Change::Set(text, locale));
+                self.assign_due(now, host)?;
             }
             Incoming::Debug {
                 client,
@@ -279,51 +286,38 @@ impl Flow {
         }
     }
 
-    /// Begins to prepare a new version, or does another change at once.
-    fn begin_change(&mut self, change: Incoming, now: u32, host: &Host) -> io::Result<()> {
-        match change {
-            Incoming::Patch(when_gone, path, locale) => {
-                self.versions.begin(when_gone, path, locale);
-                Ok(())
-            }
-            Incoming::Set(text, locale) => {
-                let answer = self.set(&text, locale);
-                host.changed(answer.is_changed, &answer.text)?;
-                self.report(now, true, host)
-            }
-            // Nothing else is a change.
-            Incoming::Direct(_)
-            | Incoming::Mail(..)
-            | Incoming::Web
-            | Incoming::Watch(_)
-            | Incoming::Debug { .. }
-            | Incoming::DebugLeft
-            | Incoming::Reply(..)
-            | Incoming::Gone => Ok(()),
+    /// Assigns what is due. A version that is due begins to be prepared.
+    fn assign_due(&mut self, now: u32, host: &Host) -> io::Result<()> {
+        while let Some((text, locale)) = self.versions.next() {
+            let answer = self.set(&text, locale);
+            host.changed(answer.is_changed, &answer.text)?;
+            self.report(now, true, host)?;
         }
+        Ok(())
     }
 
-    /// Puts a version into force that is prepared, and begins what was asked for after it.
+    /// Puts a version into force that is prepared, and does what was asked for after it.
     fn take_version(
         &mut self,
         now: u32,
         (robot, watch): (&mut Robot<'_>, &mut Watch),
         host: &Host,
     ) -> io::Result<()> {
-        if let Some(ready) = self.versions.ready() {
-            // Blocks have other numbers then.
-            if self.diary.as_ref().is_some_and(Diary::has_news) {
-                let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
-                watch.last_of_flow(machine, diary, now, host)?;
-            }
-            let answer = self.patch(ready, robot, watch, host);
+        let Some(ready) = self.versions.ready() else {
+            return Ok(());
+        };
+        // Blocks have other numbers then.
+        if self.diary.as_ref().is_some_and(Diary::has_news) {
+            let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
+            watch.last_of_flow(machine, diary, now, host)?;
+        }
+        let count = ready.count;
+        let answer = self.patch(ready, robot, watch, host);
+        for _ in 0..count {
             host.changed(answer.is_changed, &answer.text)?;
-            self.report(now, true, host)?;
         }
-        while let Some(change) = self.versions.next() {
-            self.begin_change(change, now, host)?;
-        }
-        Ok(())
+        self.report(now, true, host)?;
+        self.assign_due(now, host)
     }
 
     /// Replaces the program by a version, whole or not at all. There are no threads whose block could be gone.

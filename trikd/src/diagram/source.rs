@@ -11,7 +11,7 @@ use lang_dataflow::project::Project;
 use lang_dataflow::read::{Language, language, project};
 use lang_dataflow::text::{self, Places};
 use lang_diagram::read::Opened;
-use lang_text::problem::{Locale, Place, Position, Problem, Severity};
+use lang_text::problem::{Locale, Position, Problem, Severity};
 use std::io;
 use std::path::Path;
 
@@ -107,14 +107,6 @@ fn line(problem: &Problem, at: Option<Position>, locale: Locale) -> String {
     let Some(at) = at else {
         return problem.in_locale(locale);
     };
-    // The line begins with the place in the file, not with that in the property.
-    let place = Place {
-        position: None,
-        ..problem.place.clone()
-    };
-    let problem = Problem {
-        place,
-        ..problem.clone()
-    };
+    let problem = problem.without_position();
     format!("{}:{} {}", at.line, at.column, problem.in_locale(locale))
 }

@@ -402,6 +402,13 @@ fn the_oddities_of_the_original_are_kept_or_mended_as_the_robot_is_told() {
     }
 }
 
+/// Runs the counter until it counts.
+pub fn count(client: &mut Client) {
+    upload(client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    while printed(client) < 2 {}
+}
+
 /// The number of the next line that the program prints.
 pub fn printed(client: &mut Client) -> i64 {
     let line = client.until("print: ");
@@ -511,9 +518,7 @@ fn what_is_wrong_changes_nothing_and_says_where() {
 fn a_thread_without_its_block_ends_with_an_error() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
-    upload(&mut client, "count.qrs", &counting());
-    client.send("run:count.qrs");
-    while printed(&mut client) < 2 {}
+    count(&mut client);
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let end = sketch.block("FinalNode", &[]);

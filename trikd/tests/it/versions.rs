@@ -1,6 +1,6 @@
 //! New versions of programs of blocks that take long to read and to check, and what is strange about them.
 
-use crate::diagrams::{counting, counting_by, printed, upload};
+use crate::diagrams::{count, counting_by, printed, upload};
 use crate::rig::robot;
 use lang_diagram::sketch::Sketch;
 
@@ -35,9 +35,7 @@ fn a_large_version_is_prepared_beside_the_program() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
     let many = counting_beside_many();
-    upload(&mut client, "count.qrs", &counting());
-    client.send("run:count.qrs");
-    while printed(&mut client) < 2 {}
+    count(&mut client);
     upload(&mut client, "count.qrs", &many);
     // What it has printed so far does not count.
     client.sync();
@@ -128,9 +126,7 @@ fn a_large_version_of_data_flow_is_prepared_beside_the_program() {
 fn what_is_strange_about_a_version_is_told_once() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
-    upload(&mut client, "count.qrs", &counting());
-    client.send("run:count.qrs");
-    while printed(&mut client) < 2 {}
+    count(&mut client);
     let mut told = |body: &str| {
         upload(&mut client, "count.qrs", &counting_by(body));
         client.send("patch:end:count.qrs");
@@ -159,9 +155,7 @@ fn what_is_strange_about_a_version_is_told_once() {
 fn a_version_that_would_take_all_memory_is_refused_and_the_program_goes_on() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
-    upload(&mut client, "count.qrs", &counting());
-    client.send("run:count.qrs");
-    while printed(&mut client) < 2 {}
+    count(&mut client);
     let mut sketch = Sketch::new();
     let long = "m = m + 1\n".repeat(6000);
     let blocks: Vec<_> = (0..25)

@@ -2,7 +2,7 @@
 
 use crate::check::words::{choose, seconds};
 use lang_constraint::Kind;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use sim::judge::{Running, Spot};
 use studio::verdict::Verdict;
 
@@ -180,7 +180,7 @@ pub(super) fn running(one: &Running, locale: Locale) -> String {
             diagram,
             id,
             kind,
-            caption: [english, russian],
+            caption: Words { english, russian },
         } => {
             // The rest of it says of which sort it is.
             let id = id.rsplit('/').next().unwrap_or(id);
