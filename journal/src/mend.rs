@@ -197,6 +197,15 @@ fn on_disk(error: mcap::McapError) -> Stop {
     Stop::Disk(Error::writing(error))
 }
 
+/// What is written to, once the header of the recording that is copied has come.
+fn begun<W: Write + Seek>(
+    out: &mut Option<mcap::Writer<W>>,
+    is_begun: bool,
+) -> Result<&mut mcap::Writer<W>, Stop> {
+    let out = out.as_mut().filter(|_| is_begun);
+    out.ok_or(Stop::Damage(Error::NotARecording))
+}
+
 /// Hears the nodes of a recording, once.
 type Begun = Box<dyn FnOnce(&[Node])>;
 
@@ -348,9 +357,7 @@ impl<W: Write + Seek> Target<W> {
             // It stood in a damaged part; maybe the summary knows the channel, when a message comes.
             (_, None) => return Ok(()),
         };
-        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
-            return Err(Stop::Damage(Error::NotARecording));
-        };
+        let out = begun(&mut self.out, self.is_begun)?;
         let id = declare(out, schema, &channel).map_err(on_disk)?;
         if self.begun.is_some() {
             let node = Node::of_channel(&channel.topic, &channel.metadata);
@@ -367,12 +374,10 @@ impl<W: Write + Seek> Target<W> {
         saved: &mut Saved,
         is_wanted: &impl Fn(&str, &MessageHeader, &[u8]) -> bool,
     ) -> Result<(), Stop> {
-        if let Some(begun) = self.begun.take() {
-            begun(&std::mem::take(&mut self.nodes));
+        if let Some(hear) = self.begun.take() {
+            hear(&std::mem::take(&mut self.nodes));
         }
-        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
-            return Err(Stop::Damage(Error::NotARecording));
-        };
+        let out = begun(&mut self.out, self.is_begun)?;
         let known = self.known.as_ref();
         if !knows(out, &mut self.channels, known, header.channel_id).map_err(on_disk)? {
             // Others of its chunk may be known.
@@ -409,9 +414,7 @@ impl<W: Write + Seek> Target<W> {
         if let Record::Header(header) = &record {
             return self.begin(header).map(|()| true);
         }
-        let Some(out) = self.out.as_mut().filter(|_| self.is_begun) else {
-            return Err(Stop::Damage(Error::NotARecording));
-        };
+        let out = begun(&mut self.out, self.is_begun)?;
         match record {
             Record::Schema { header, data } => {
                 let id = out.add_schema(&header.name, &header.encoding, &data);
