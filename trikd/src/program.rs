@@ -542,6 +542,10 @@ impl Supervisor {
             Cause::Exited(Ended::Signal(libc::SIGKILL)) if current.child.kills.have_grown() => {
                 End::Starved
             }
+            // Memory that it does not get and a stack that is too deep end it so.
+            Cause::Exited(Ended::Signal(libc::SIGABRT)) if self.last == Language::Diagram => {
+                End::Short(self.around.settings.memory_mib)
+            }
             Cause::Exited(Ended::Signal(signal)) => {
                 End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }

@@ -124,6 +124,9 @@ pub fn is_changed(text: &str, name: &str) -> Option<bool> {
 const KILLED_BY: &str = "was killed by ";
 /// Of a program that somebody has killed; what may be the system's doing is said of itself.
 const FROM_OUTSIDE: &str = "signal 9 (SIGKILL) from outside";
+/// Of a program that has ended itself for want of memory: what a program may have, before and after the number.
+const SHORT: &str = "perhaps it is too large for the memory of a program, ";
+const MIB: &str = " MiB";
 
 /// How a program ended.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -138,6 +141,8 @@ pub enum End<'a> {
     Killed(&'a str),
     /// By the system, which had no memory left.
     Starved,
+    /// By itself with SIGABRT, as a diagram does that gets no more memory; a program may have so many MiB.
+    Short(u64),
     /// By order of somebody.
     Stopped(&'a str),
     /// It did what it may not.
@@ -159,6 +164,9 @@ impl End<'_> {
             Self::Code(code) => format!("{name} has failed with exit code {code} {after}"),
             Self::Starved => {
                 format!("{name} was killed by SIGKILL {after}: perhaps the memory was short")
+            }
+            Self::Short(mib) => {
+                format!("{name} {KILLED_BY}SIGABRT {after}: {SHORT}{mib}{MIB}")
             }
             Self::Killed("SIGKILL") => format!("{name} {KILLED_BY}{FROM_OUTSIDE} {after}"),
             Self::Killed(signal) => format!("{name} {KILLED_BY}{signal} {after}"),
@@ -196,7 +204,10 @@ pub fn ended<'a>(text: &'a str, name: &str) -> Option<End<'a>> {
         return code.parse().ok().map(End::Code);
     }
     if let Some(signal) = what.strip_prefix(KILLED_BY) {
+        let short = time.split_once(SHORT);
+        let short = short.and_then(|(_, mib)| mib.strip_suffix(MIB)?.parse().ok());
         return Some(match signal {
+            "SIGABRT" => short.map_or(End::Killed(signal), End::Short),
             // Older robots say so of every one.
             "SIGKILL" => End::Starved,
             FROM_OUTSIDE => End::Killed("SIGKILL"),
@@ -258,6 +269,8 @@ mod tests {
             End::Code(-1),
             End::Killed("SIGKILL"),
             End::Starved,
+            End::Short(256),
+            End::Killed("SIGABRT"),
             End::Killed("SIGSEGV"),
             End::Stopped("a client"),
             End::Stopped("the day after 3 s"),

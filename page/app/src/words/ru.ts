@@ -111,6 +111,10 @@ export const ru: Words = {
       '{name}: завершена извне сигналом 9 (SIGKILL) через {seconds} с',
     ],
     [
+      '{name} was killed by SIGABRT after {seconds} s: perhaps it is too large for the memory of a program, {mib} MiB',
+      '{name}: завершена сигналом SIGABRT через {seconds} с: возможно, она слишком велика для памяти программы, {mib} МиБ',
+    ],
+    [
       '{name} was killed by {signal} after {seconds} s',
       '{name}: завершена сигналом {signal} через {seconds} с',
     ],

@@ -58,7 +58,7 @@ fn whole(text: &str) -> Option<&'static str> {
 }
 
 /// Sentences with names and numbers, which stand for `{}`, in English and Russian; the first that fits counts.
-const TEMPLATES: [[&str; 2]; 36] = [
+const TEMPLATES: [[&str; 2]; 37] = [
     ["{} is not changed: {}", "{} не изменена: {}"],
     ["{} is changed: {}", "{} изменена: {}"],
     ["{} has started", "{} запущена"],
@@ -78,6 +78,10 @@ const TEMPLATES: [[&str; 2]; 36] = [
     [
         "{} was killed by signal 9 (SIGKILL) from outside after {} s",
         "{} завершена извне сигналом 9 (SIGKILL) через {} с",
+    ],
+    [
+        "{} was killed by SIGABRT after {} s: perhaps it is too large for the memory of a program, {} MiB",
+        "{} завершена сигналом SIGABRT через {} с: возможно, она слишком велика для памяти программы, {} МиБ",
     ],
     [
         "{} was killed by {} after {} s",
@@ -321,6 +325,10 @@ mod tests {
             (
                 End::Starved,
                 "a b.js завершена сигналом SIGKILL через 1.2 с: возможно",
+            ),
+            (
+                End::Short(256),
+                "a b.js завершена сигналом SIGABRT через 1.2 с: возможно, она слишком велика",
             ),
             (
                 End::Killed("SIGKILL"),
