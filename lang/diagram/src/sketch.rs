@@ -123,6 +123,13 @@ impl Sketch {
         Spot(place)
     }
 
+    /// Draws a block at this place, in pixels from the left and from the top of its sheet.
+    pub fn place(&mut self, block: Spot, x: u16, y: u16) {
+        let graphical = self.blocks[block.0].graphical.clone();
+        let position = format!("{x}, {y}");
+        self.set(&graphical, Kind::Shape("QPointF"), "position", &position);
+    }
+
     /// Adds a call of a subprogram with texts of its arguments, in the order of its parameters.
     pub fn call(&mut self, sheet: DiagramId, arguments: &[&str]) -> Spot {
         let spot = self.block("Subprogram", &[]);

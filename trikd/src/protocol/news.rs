@@ -141,7 +141,7 @@ pub enum End<'a> {
     Killed(&'a str),
     /// By the system, which had no memory left.
     Starved,
-    /// By itself with SIGABRT, as a diagram does that gets no more memory; a program may have so many MiB.
+    /// By itself with SIGABRT, as a diagram does that gets no more memory; a program has at most this number of MiB.
     Short(u64),
     /// By order of somebody.
     Stopped(&'a str),

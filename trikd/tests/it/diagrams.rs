@@ -311,26 +311,6 @@ fn speaks(client: &mut Client, asked: [(&str, bool); 3]) {
 }
 
 #[test]
-fn a_diagram_that_is_too_large_for_the_memory_of_a_program_ends_with_that_reason() {
-    let robot = robot(&["--memory-mib", "80"]);
-    let mut client = robot.client("control");
-    let mut sketch = Sketch::new();
-    let start = sketch.block("InitialNode", &[]);
-    let body = "n = n + 1\n".repeat(500);
-    let blocks = (0..300).map(|_| sketch.block("Function", &[("Body", &body)]));
-    let chain: Vec<_> = std::iter::once(start).chain(blocks).collect();
-    sketch.chain(&chain);
-    upload(&mut client, "large.qrs", &sketch.qrs().expect("a save"));
-    upload(&mut client, "count.qrs", &counting());
-    client.send("run:large.qrs");
-    let told = client.until("error: large.qrs was killed");
-    let why = ": perhaps it is too large for the memory of a program, 80 MiB";
-    assert!(told.ends_with(why), "{told}");
-    client.send("run:count.qrs");
-    client.until("print: 1\n");
-}
-
-#[test]
 fn each_mistake_of_a_diagram_is_told_once_with_its_block_and_place() {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);

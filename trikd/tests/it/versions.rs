@@ -1,6 +1,7 @@
-//! New versions of programs of blocks that take long to read and to check, and what is strange about them.
+//! Large programs of blocks: versions that take long to read and to check, what is strange about them, and a program for
+//! which there is no memory.
 
-use crate::diagrams::{count, counting_by, printed, upload};
+use crate::diagrams::{count, counting, counting_by, printed, upload};
 use crate::rig::robot;
 use lang_diagram::sketch::Sketch;
 
@@ -171,4 +172,24 @@ fn a_version_that_would_take_all_memory_is_refused_and_the_program_goes_on() {
     let before = printed(&mut client);
     while printed(&mut client) < before + 3 {}
     client.send("stop");
+}
+
+#[test]
+fn a_diagram_that_is_too_large_for_the_memory_of_a_program_ends_with_that_reason() {
+    let robot = robot(&["--memory-mib", "80"]);
+    let mut client = robot.client("control");
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let body = "n = n + 1\n".repeat(500);
+    let blocks = (0..300).map(|_| sketch.block("Function", &[("Body", &body)]));
+    let chain: Vec<_> = std::iter::once(start).chain(blocks).collect();
+    sketch.chain(&chain);
+    upload(&mut client, "large.qrs", &sketch.qrs().expect("a save"));
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:large.qrs");
+    let told = client.until("error: large.qrs was killed");
+    let why = ": perhaps it is too large for the memory of a program, 80 MiB";
+    assert!(told.ends_with(why), "{told}");
+    client.send("run:count.qrs");
+    client.until("print: 1\n");
 }

@@ -103,6 +103,19 @@ fn each_behaviour_does_what_its_world_asks() {
 }
 
 #[test]
+fn the_diagram_among_the_examples_follows_the_same_line() {
+    let board = Board::new();
+    let file = root().join("examples/diagrams/line.qrs");
+    let world = library().join("line.xml");
+    let [file, world] = [&file, &world].map(|path| path.to_str().expect("a name in UTF-8"));
+    let found = trik(&board, &["lint", file]);
+    assert_eq!(found.stdout, "1 file: 0 errors, 0 warnings, 0 notes\n");
+    let run = trik(&board, &["check", file, "--field", world]);
+    assert_eq!(run.code(), 0, "{}", run.stdout);
+    assert!(run.stdout.contains("The task was accomplished"));
+}
+
+#[test]
 fn without_one_of_its_parts_a_behaviour_fails_in_its_world() {
     let board = Board::new();
     for without in &WITHOUT {
