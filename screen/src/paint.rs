@@ -139,7 +139,7 @@ impl Brush<'_> {
     fn bar(&mut self, from: [i32; 2], to: [i32; 2]) {
         let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(f64::from);
         let (along, down) = (x2 - x1, y2 - y1);
-        let length = along.hypot(down);
+        let length = libm::hypot(along, down);
         let (along, down) = if length > 0.0 {
             (along / length, down / length)
         } else {
@@ -197,7 +197,8 @@ impl Brush<'_> {
         let (half_width, half_height) = (f64::from(width) / 2.0, f64::from(height) / 2.0);
         let place = |degrees: i32| {
             let angle = f64::from(degrees).to_radians();
-            let (right, up) = (angle.cos() * half_width, angle.sin() * half_height);
+            let (up, right) = libm::sincos(angle);
+            let (right, up) = (right * half_width, up * half_height);
             [
                 (f64::from(x) + half_width + right).round() as i32,
                 (f64::from(y) + half_height - up).round() as i32,

@@ -17,7 +17,7 @@ pub const fn point(x: f64, y: f64) -> Point {
 impl Point {
     /// The direction of an angle in radians.
     pub fn towards(angle_rad: f64) -> Self {
-        point(angle_rad.cos(), angle_rad.sin())
+        point(libm::cos(angle_rad), libm::sin(angle_rad))
     }
 
     /// `self` moved by `distance` in the direction of `other`.
@@ -45,7 +45,7 @@ impl Point {
 
     /// Length of the vector.
     pub fn length(self) -> f64 {
-        self.x.hypot(self.y)
+        libm::hypot(self.x, self.y)
     }
 }
 

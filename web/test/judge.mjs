@@ -5,9 +5,10 @@
 //
 // PACKAGE is what web/build.sh has built; OURS the folder of our own recorded runs, unpacked; DATA that of real projects.
 import assert from 'node:assert/strict';
-import { readFileSync, readdirSync } from 'node:fs';
-import { cpus } from 'node:os';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { cpus, tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { check, lint, printed } from './native.mjs';
 
 const [folder, trik, ...places] = process.argv.slice(2);
@@ -102,6 +103,36 @@ async function each(all, work) {
   await Promise.all(cpus().map(one));
 }
 
+/** Worlds of the examples with realistic physics, sensors and motors, in which sines and noise count. */
+async function judgeRealistic() {
+  const examples = fileURLToPath(new URL('../../examples', import.meta.url));
+  const project = join(examples, 'diagrams/line.qrs');
+  const worlds = readdirSync(join(examples, 'dataflow')).filter((name) => name.endsWith('.xml'));
+  assert.ok(worlds.length > 3);
+  const made = mkdtempSync(join(tmpdir(), 'trik-web-'));
+  try {
+    const runs = worlds.map((world) => {
+      const text = readFileSync(join(examples, 'dataflow', world), 'utf8');
+      const realistic = text.replace(/(realistic\w+)="false"/g, '$1="true"');
+      assert.notEqual(realistic, text, `${world} has no settings`);
+      const field = join(made, world);
+      writeFileSync(field, realistic);
+      return { name: `${world}, realistic`, project, field, modelSeconds: 30 };
+    });
+    let places = 0;
+    await each(runs, async (run) => {
+      const found = await compare(run);
+      assert.ok(found, run.name);
+      places += found.judged.trajectory.length;
+      found.project.free();
+    });
+    assert.ok(places > 10_000, `only ${places} characters of trajectories`);
+    console.log(`${runs.length} realistic runs judged alike`);
+  } finally {
+    rmSync(made, { recursive: true });
+  }
+}
+
 async function judgeAll(place) {
   const runs = recorded(place);
   assert.ok(runs.length > 40, `only ${runs.length} runs in ${place}`);
@@ -165,5 +196,6 @@ for (const [index, place] of places.entries()) {
   // Each is a process of `trik`: our own are many, and some of them are enough.
   await writeAll(projects.filter((_, number) => number % (index === 0 ? 12 : 2) === 0));
 }
+await judgeRealistic();
 const memory = studio.initSync().memory.buffer.byteLength;
 console.log(`judged in ${Math.round(msHere)} ms here; ${(memory / 2 ** 20).toFixed(1)} MiB of memory`);

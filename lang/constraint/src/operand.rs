@@ -304,7 +304,7 @@ fn binary(operation: Binary, left: &Value, right: &Value) -> Value {
         let (left, right) = (left.to_point(), right.to_point());
         let x = f64::from(left.x) - f64::from(right.x);
         let y = f64::from(left.y) - f64::from(right.y);
-        return Value::Double(x.hypot(y));
+        return Value::Double(libm::hypot(x, y));
     }
     let (left, right) = (left.to_int(), right.to_int());
     Value::Int(match operation {

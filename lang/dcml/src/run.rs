@@ -288,7 +288,7 @@ fn perform(step: &Step, registers: &mut [f64]) {
             registers[to as usize] = operator.apply(registers[x as usize], registers[y as usize]);
         }
         Step::SinCos([sin, cos], x) => {
-            let both = registers[x as usize].sin_cos();
+            let both = libm::sincos(registers[x as usize]);
             registers[sin as usize] = both.0;
             registers[cos as usize] = both.1;
         }

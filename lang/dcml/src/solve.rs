@@ -398,7 +398,8 @@ impl Solver {
             let error = step::dormand_prince(self, system, actions, size, end);
             if error <= 1.0 {
                 let smooth = error.max(1e-10);
-                let factor = SAFETY * smooth.powf(-EXPONENT) * self.last_error.powf(MEMORY);
+                let factor =
+                    SAFETY * libm::pow(smooth, -EXPONENT) * libm::pow(self.last_error, MEMORY);
                 let most = if is_rejected { 1.0 } else { 10.0 };
                 let next = size * factor.clamp(0.2, most);
                 self.next = if is_last { next.max(planned) } else { next };
@@ -411,7 +412,7 @@ impl Solver {
             }
             is_rejected = true;
             let factor = if error.is_finite() {
-                (SAFETY * error.powf(-EXPONENT)).clamp(0.1, 1.0)
+                (SAFETY * libm::pow(error, -EXPONENT)).clamp(0.1, 1.0)
             } else {
                 0.1
             };

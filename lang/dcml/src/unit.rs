@@ -142,7 +142,7 @@ impl Unit {
             // A whole number in range.
             *one = exact as i16;
         }
-        let scale = self.scale.powf(exponent);
+        let scale = libm::pow(self.scale, exponent);
         Self { powers, scale }.sane()
     }
 

@@ -287,7 +287,7 @@ pub fn motion(rolling: &Rolling, powers: [i32; 2], degrees: f64) -> Motion {
     let heading = degrees.to_radians();
     if (left - right).abs() < SAME {
         let way = (mean * time) as f32;
-        let direction = (heading.cos() as f32, heading.sin() as f32);
+        let direction = (libm::cos(heading) as f32, libm::sin(heading) as f32);
         return Motion {
             shift: (way * direction.0, way * direction.1),
             turn: 0.0,
@@ -297,10 +297,10 @@ pub fn motion(rolling: &Rolling, powers: [i32; 2], degrees: f64) -> Motion {
     let radius = mean / (turn / time);
     // The centre of the robot around the point beside its axle, in the robot's own directions.
     let (x, y) = (-rolling.axle, -radius);
-    let x_turned = x * turn.cos() - y * turn.sin() + rolling.axle;
-    let y_turned = x * turn.sin() + y * turn.cos() + radius;
-    let shift_x = x_turned * heading.cos() - y_turned * heading.sin();
-    let shift_y = x_turned * heading.sin() + y_turned * heading.cos();
+    let x_turned = x * libm::cos(turn) - y * libm::sin(turn) + rolling.axle;
+    let y_turned = x * libm::sin(turn) + y * libm::cos(turn) + radius;
+    let shift_x = x_turned * libm::cos(heading) - y_turned * libm::sin(heading);
+    let shift_y = x_turned * libm::sin(heading) + y_turned * libm::cos(heading);
     Motion {
         shift: (shift_x as f32, shift_y as f32),
         turn: turn * 180.0 / std::f64::consts::PI,

@@ -109,7 +109,7 @@ impl Operator {
             Self::Multiply => one * other,
             Self::Divide if other == 0.0 => return None,
             Self::Divide => one / other,
-            Self::Power => one.powf(other),
+            Self::Power => libm::pow(one, other),
             Self::Min if one < other => one,
             Self::Max if one < other => other,
             Self::Min => other,

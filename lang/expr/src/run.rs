@@ -156,7 +156,7 @@ impl<'a> Run<'a> {
             }
             Binary::Power => {
                 let left = self.number(left);
-                left.powf(self.number(right))
+                libm::pow(left, self.number(right))
             }
             Binary::Join => self.value(id).to_float(),
             Binary::DivideWhole

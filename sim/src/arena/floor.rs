@@ -399,7 +399,7 @@ fn turn(degrees: f64) -> (f64, f64) {
     } else if degrees == 180.0 || degrees == -180.0 {
         (0.0, -1.0)
     } else {
-        degrees.to_radians().sin_cos()
+        libm::sincos(degrees.to_radians())
     }
 }
 

@@ -38,7 +38,7 @@ impl Graphic {
         if self.rotation == 0.0 {
             return moved;
         }
-        let (sin, cos) = (-self.rotation).to_radians().sin_cos();
+        let (sin, cos) = libm::sincos((-self.rotation).to_radians());
         point(moved.x * cos - moved.y * sin, moved.x * sin + moved.y * cos)
     }
 }

@@ -75,7 +75,7 @@ pub fn distance(
 pub fn is_touching(solids: &Solids, at: Point, degrees: f64, scratch: &mut Outline) -> bool {
     let (height, ahead) = TOUCH;
     let radius = (height / std::f64::consts::SQRT_2).ceil();
-    let (sin, cos) = degrees.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
     scratch.clear();
     scratch.add_circle(point(at.x + ahead * cos, at.y + ahead * sin), radius);
     solids.meets(scratch)
@@ -238,7 +238,7 @@ fn parameter(share: f64) -> f64 {
     if share >= 1.0 - 1e-12 {
         return 1.0;
     }
-    let (sin, cos) = (share * 90.0).to_radians().sin_cos();
+    let (sin, cos) = libm::sincos((share * 90.0).to_radians());
     let mut by_cos = share;
     for _ in 0..2 {
         let value = ((2.0 - 3.0 * KAPPA) * by_cos + 3.0 * (KAPPA - 1.0)) * by_cos * by_cos + 1.0;

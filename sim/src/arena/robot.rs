@@ -203,7 +203,7 @@ impl Robot {
     /// The square and the sensors as they stand on the field.
     pub fn outline_into(&self, into: &mut Outline) {
         into.clear();
-        let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.pose.degrees.to_radians());
         let centre = self.centre();
         for corners in self.outline.figures() {
             into.add(corners.iter().map(|corner| {
@@ -218,7 +218,7 @@ impl Robot {
     /// The square alone, without sensors: corners in order.
     pub fn square(&self) -> [Point; 4] {
         square_of(self.half()).map(|Point { x, y }| {
-            let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
+            let (sin, cos) = libm::sincos(self.pose.degrees.to_radians());
             let centre = self.centre();
             point(centre.x + x * cos - y * sin, centre.y + x * sin + y * cos)
         })
@@ -228,7 +228,7 @@ impl Robot {
     pub fn sensor_corners(&self, sensor: &Sensor) -> Option<[Point; 4]> {
         let half = self.half();
         let centre = self.centre();
-        let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.pose.degrees.to_radians());
         Some(body_of(sensor)?.map(|one| {
             let (x, y) = (one.x - half.x, one.y - half.y);
             point(centre.x + x * cos - y * sin, centre.y + x * sin + y * cos)
@@ -241,7 +241,7 @@ impl Robot {
         // The original turns the way from the centre in 32 bits.
         let x = f64::from((sensor.at.x - half.x) as f32);
         let y = f64::from((sensor.at.y - half.y) as f32);
-        let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.pose.degrees.to_radians());
         let turned_x = (x * cos - y * sin) as f32;
         let turned_y = (x * sin + y * cos) as f32;
         let centre = self.centre();
@@ -490,7 +490,7 @@ pub(super) fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
         | SensorKind::Other => width / 2.0,
     };
     let (left, half) = (-width / 2.0, height / 2.0);
-    let (sin, cos) = sensor.direction.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(sensor.direction.to_radians());
     let corners = [(left, -half), (right, -half), (right, half), (left, half)];
     Some(corners.map(|(x, y)| {
         point(

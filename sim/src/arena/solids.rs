@@ -172,7 +172,7 @@ pub fn wall(wall: &Wall) -> [Point; 4] {
 pub fn outline_of(solid: &Solid) -> Outline {
     let mut outline = Outline::default();
     let half = solid.size / 2.0;
-    let (sin, cos) = solid.rotation.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(solid.rotation.to_radians());
     let turned = |x: f64, y: f64| point(x * cos - y * sin, x * sin + y * cos);
     if solid.kind == SolidKind::Cube {
         outline.add(

@@ -53,7 +53,7 @@ impl Motor {
         };
         let before = self.speed_dps;
         // The exact solution of a first-order lag, so that the length of a step does not matter.
-        let left = (-dt_s / lag_s).exp();
+        let left = libm::exp(-dt_s / lag_s);
         self.speed_dps = target + (before - target) * left;
         self.angle_deg += target * dt_s + (before - target) * lag_s * (1.0 - left);
         match power {

@@ -416,9 +416,9 @@ impl Body for TwoWheels {
     }
 
     fn pixel(&self, right: f64, down: f64) -> Option<Colour> {
-        let beside = -right * CAMERA_HALF_WIDTH_RAD.tan();
-        let below = down * CAMERA_HALF_HEIGHT_RAD.tan();
-        let (sin, cos) = CAMERA_PITCH_RAD.sin_cos();
+        let beside = -right * libm::tan(CAMERA_HALF_WIDTH_RAD);
+        let below = down * libm::tan(CAMERA_HALF_HEIGHT_RAD);
+        let (sin, cos) = libm::sincos(CAMERA_PITCH_RAD);
         let (ahead, sinks) = (cos - below * sin, sin + below * cos);
         let origin = self.rolling.pose().place(CAMERA_AHEAD_M, 0.0);
         let flat = self
@@ -467,7 +467,7 @@ fn sees_ball(
         return false;
     }
     let height = CAMERA_HEIGHT_M - along * slope - radius;
-    centre.cross(towards).hypot(height) <= radius
+    libm::hypot(centre.cross(towards), height) <= radius
 }
 
 #[cfg(test)]

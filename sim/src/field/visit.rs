@@ -70,7 +70,7 @@ impl Solid {
             SolidKind::Cube => self.rotation.to_radians(),
             SolidKind::Skittle | SolidKind::Ball => 0.0,
         };
-        let (sin, cos) = radians.sin_cos();
+        let (sin, cos) = libm::sincos(radians);
         point(at.x + half * (cos - sin), at.y + half * (cos + sin))
     }
 }

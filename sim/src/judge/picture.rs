@@ -150,7 +150,7 @@ fn way(trajectory: &Trajectory, robot: usize, (letters, locale): (f64, Locale), 
         next += every;
         let (x, y) = (x + HALF, y + HALF);
         // A robot that stands has one mark.
-        if before.is_some_and(|before| (before.0 - x).hypot(before.1 - y) < 12.0) {
+        if before.is_some_and(|before| libm::hypot(before.0 - x, before.1 - y) < 12.0) {
             continue;
         }
         before = Some((x, y));
@@ -179,7 +179,7 @@ fn polyline(points: &[(f64, f64)], ink: &str, width: f64, opacity: f64, svg: &mu
     let mut before: Option<(f64, f64)> = None;
     let far = points.iter().enumerate().filter(|&(index, &(x, y))| {
         let is_last = index + 1 == points.len();
-        let is_near = before.is_some_and(|at| (at.0 - x).hypot(at.1 - y) < NEAR);
+        let is_near = before.is_some_and(|at| libm::hypot(at.0 - x, at.1 - y) < NEAR);
         if is_last || !is_near {
             before = Some((x, y));
         }

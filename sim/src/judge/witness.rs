@@ -158,7 +158,7 @@ impl Seen<'_> {
         let Some(robot) = self.arena.robot_mut(0) else {
             return;
         };
-        let (sin, cos) = self.start.degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.start.degrees.to_radians());
         let (ahead, right) = (moved.at.x * PIXELS_IN_M, -moved.at.y * PIXELS_IN_M);
         let before = robot.pose().degrees;
         let degrees = self.start.degrees - moved.heading_rad.to_degrees();

@@ -211,7 +211,7 @@ fn draw_edge(edge: &Edge, way: &[(f64, f64)], blocks: &[Block], svg: &mut Svg) {
         .close();
     if let [.., before, last] = way {
         let (x, y) = (last.0 - before.0, last.1 - before.1);
-        let long = x.hypot(y);
+        let long = libm::hypot(x, y);
         if long > 1.0 {
             let (x, y) = (x / long * 9.0, y / long * 9.0);
             let foot = (last.0 - x, last.1 - y);
@@ -226,7 +226,7 @@ fn draw_edge(edge: &Edge, way: &[(f64, f64)], blocks: &[Block], svg: &mut Svg) {
         }
     }
     let said = queue(edge);
-    let long = |line: &&[(f64, f64)]| (line[1].0 - line[0].0).hypot(line[1].1 - line[0].1);
+    let long = |line: &&[(f64, f64)]| libm::hypot(line[1].0 - line[0].0, line[1].1 - line[0].1);
     // Of equally long parts the first one.
     let longest = way
         .windows(2)

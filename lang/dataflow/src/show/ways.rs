@@ -209,7 +209,7 @@ impl<'a> Ways<'a> {
                 f64::midpoint(block.low.1, block.high.1),
             );
             // By both legs of the triangle: what is near the straight line comes first.
-            let leg = |end: Place| (middle.0 - end.0).hypot(middle.1 - end.1);
+            let leg = |end: Place| libm::hypot(middle.0 - end.0, middle.1 - end.1);
             leg(from) + leg(to)
         };
         near.sort_by(|one, other| line(one).total_cmp(&line(other)));

@@ -79,7 +79,7 @@ fn far(angles: &[f64; LANES], sines: &mut [f64; LANES], cosines: &mut [f64; LANE
     for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
         // What is no number is far too.
         if angle.is_nan() || angle.abs() > REACH {
-            (*sine, *cosine) = angle.sin_cos();
+            (*sine, *cosine) = libm::sincos(*angle);
         }
     }
 }

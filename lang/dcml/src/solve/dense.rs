@@ -59,7 +59,8 @@ pub(super) fn between(solver: &Solver, time: f64, state: &mut [f64]) {
     }
     match solver.options.method {
         Method::Rk45 => {
-            let powers = [part, part.powi(2), part.powi(3), part.powi(4)];
+            let square = part * part;
+            let powers = [part, square, square * part, square * square];
             let weight = |row: [f64; 4]| -> f64 {
                 row.iter().zip(powers).map(|(one, power)| one * power).sum()
             };

@@ -179,7 +179,7 @@ pub(super) fn first<S: System + ?Sized>(
     let next = if steepest <= 1e-15 {
         (guess * 1e-3).max(1e-6)
     } else {
-        (0.01 / steepest).powf(0.2)
+        libm::pow(0.01 / steepest, 0.2)
     };
     let first = (100.0 * guess).min(next).min(most);
     // What is not finite is found by the step itself.

@@ -404,7 +404,7 @@ impl Chassis {
 /// Where a sensor's body is, with the half pixel that the original's drawing of it is off.
 fn sensor_at(at: Point, centre: Point, degrees: f64) -> Point {
     let half = ROBOT_SIZE / 2.0;
-    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let (sine, cosine) = libm::sincos(degrees.to_radians());
     let (x, y) = (at.x - half, at.y - half);
     point(
         centre.x + x * cosine - y * sine - 0.5,

@@ -182,6 +182,34 @@ fn the_same_run_is_the_same_again() {
     assert_eq!(run(), run());
 }
 
+/// On a PC, on the controller and in a browser.
+#[test]
+fn a_run_has_the_same_bits_on_every_machine() {
+    let mut field = field();
+    for (kind, y) in [(SolidKind::Cube, 30.0), (SolidKind::Skittle, 60.0)] {
+        field.solids.push(Solid::new(kind, point(120.0, y)));
+    }
+    let mut arena = Arena::new(&field, watched());
+    for (left, right) in [(100, 70), (60, 90), (-80, 80), (100, 100)] {
+        drive(&mut arena, left, right, 100);
+    }
+    let pose = arena.robots()[0].pose();
+    let solids = arena.field().solids.iter();
+    let places = solids.flat_map(|solid| [solid.at.x, solid.at.y]);
+    let numbers = [pose.x, pose.y, pose.degrees].into_iter().chain(places);
+    let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
+    let known = [
+        4_629_955_326_847_511_808,
+        13_853_246_978_060_972_288,
+        13_862_367_571_187_026_174,
+        4_636_585_633_911_930_880,
+        13_849_113_619_226_165_248,
+        4_639_985_814_028_156_928,
+        4_634_703_563_673_567_232,
+    ];
+    assert_eq!(bits, known);
+}
+
 #[test]
 fn strange_worlds_do_no_harm() {
     let mut field = field();

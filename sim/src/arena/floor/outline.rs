@@ -160,7 +160,7 @@ impl Outline {
     /// has no length, no width or is far away. With a square cap it is longer by half its width at each end.
     pub fn bar(begin: Point, end: Point, width: f64, cap: Cap) -> Option<Self> {
         let (x, y) = (end.x - begin.x, end.y - begin.y);
-        let length = x.hypot(y);
+        let length = libm::hypot(x, y);
         short(length)?;
         if length <= 0.0 || width <= 0.0 || width.is_nan() {
             return None;
@@ -302,7 +302,7 @@ pub fn dashes(begin: Point, end: Point, width: f64, style: &str) -> Vec<(Point, 
     let width = pen_width(width);
     let pattern = pattern(style);
     let (x, y) = (end.x - begin.x, end.y - begin.y);
-    let length = x.hypot(y);
+    let length = libm::hypot(x, y);
     let every: f64 = pattern.iter().map(|&part| f64::from(part) * width).sum();
     if every <= 0.0 || length.is_nan() || length >= limits::DASHES * every {
         return vec![(begin, end)];

@@ -75,7 +75,7 @@ pub fn length(steps: &[Step]) -> f64 {
     let mut go = |to: Spot, is_drawn: bool| {
         let (x, y): Spot = (to.0 - here.0, to.1 - here.1);
         if is_drawn {
-            sum += x.hypot(y);
+            sum += libm::hypot(x, y);
         }
         here = to;
     };
@@ -98,7 +98,7 @@ struct Piece {
 
 fn unit(from: Spot, to: Spot) -> Option<Spot> {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
-    let length = x.hypot(y);
+    let length = libm::hypot(x, y);
     (length > 0.0 && length.is_finite()).then(|| (x / length, y / length))
 }
 
@@ -340,13 +340,13 @@ impl Pen<'_> {
                 }
             }
             skia::LineJoin::Round => {
-                let turn = cross.atan2(dot);
+                let turn = libm::atan2(cross, dot);
                 let count = (turn / std::f64::consts::FRAC_PI_2).ceil().max(1.0);
                 let part = turn / count;
-                let near = 4.0 / 3.0 * (part / 4.0).tan() * half;
+                let near = 4.0 / 3.0 * libm::tan(part / 4.0) * half;
                 let mut from = before;
                 for _ in 0..count as u32 {
-                    let (sine, cosine) = part.sin_cos();
+                    let (sine, cosine) = libm::sincos(part);
                     let to = (
                         from.0 * cosine - from.1 * sine,
                         from.0 * sine + from.1 * cosine,
@@ -421,7 +421,7 @@ mod tests {
                 .iter()
                 .any(|step| {
                     let (Step::Move(to) | Step::Line(to) | Step::Curve([_, _, to])) = step;
-                    (to.0 - spot.0).hypot(to.1 - spot.1) < 1e-9
+                    libm::hypot(to.0 - spot.0, to.1 - spot.1) < 1e-9
                 })
         };
         assert!(has(skia::LineJoin::Miter, (11.0, -1.0)));

@@ -303,7 +303,10 @@ fn ellipse(low: Point, high: Point, wider: f64) -> Vec<Point> {
     );
     let corner = |index: u32| {
         let angle = f64::from(index) / f64::from(ROUND) * std::f64::consts::TAU;
-        point(centre.x + a * angle.cos(), centre.y + b * angle.sin())
+        point(
+            centre.x + a * libm::cos(angle),
+            centre.y + b * libm::sin(angle),
+        )
     };
     (0..ROUND).map(corner).collect()
 }
