@@ -365,7 +365,7 @@ fn a_long_way_back_is_given_up_when_an_editor_pauses() {
     let points = json!({"breakpoints": [{"line": 3, "condition": "n < 0"}]});
     editor.good("setBreakpoints", points);
     for end in ["pause", "cancel"] {
-        // One behind the other, so that the way back is not over before.
+        // Both at once, so that the way back is not over before.
         let back = editor.post("reverseContinue", json!({"threadId": 1}));
         let end_of_it = editor.post(end, json!({"threadId": 1}));
         for seq in [back, end_of_it] {
