@@ -6,5 +6,6 @@ export default defineConfig({
   plugins: [svelte()],
   // A recording that tests read.
   assetsInclude: ['**/*.mcap'],
-  test: { include: ['src/**/*.test.ts'] },
+  // Some compute, on machines that are busy.
+  test: { include: ['src/**/*.test.ts'], testTimeout: 60_000 },
 });

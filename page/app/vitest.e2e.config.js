@@ -5,8 +5,10 @@ import { defineConfig } from 'vitest/config';
 export default defineConfig({
   test: {
     include: ['e2e/*.e2e.{ts,js}'],
-    testTimeout: 60_000,
-    hookTimeout: 60_000,
+    testTimeout: 180_000,
+    hookTimeout: 180_000,
+    // As long as everything else is waited for; one second is too little on a busy machine.
+    expect: { poll: { timeout: 60_000 } },
     fileParallelism: false,
     retry: 0,
   },

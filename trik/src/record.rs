@@ -64,6 +64,8 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let disk = create(&place, LIBRARY, recorder::limits::WAITING_BYTES);
     let disk = disk.map_err(refused)?;
     let mut tape = Tape::begin(watch, disk);
+    // What is written as soon as the person reads that it has begun does not count as what was there before.
+    tape.look();
     say(&begun(&tape.watch, args))?;
     let is_watched = io::stderr().is_terminal();
     let begin = Instant::now();

@@ -14,6 +14,7 @@ const { DebugClient } = require("@vscode/debugadapter-testsupport");
 const program = path.join(__dirname, "texts", "count.qrs");
 
 async function talk(client) {
+  client.defaultTimeout = PATIENCE;
   const caps = await client.initializeRequest();
   assert.ok(caps.body.supportsStepBack && caps.body.supportsLogPoints && caps.body.supportsDataBreakpoints && caps.body.supportsRestartRequest);
   const initialized = client.waitForEvent("initialized");

@@ -100,7 +100,7 @@ test('the world is as it was at any moment, with the way until then', async () =
   const carried = await said(page);
   assert.ok(Math.abs(carried - moved) < 0.04, 'nobody has carried it');
   await page.context().close();
-}, 120_000);
+});
 
 /** A recording that was paused stands still. */
 async function stands(page) {
@@ -156,7 +156,7 @@ test('over a replay the world is the recorded one, at the moment of the player',
   } finally {
     await player.end();
   }
-}, 120_000);
+});
 
 test('over the replay of a recording without a world the place is that of the wheels', async () => {
   const file = await driven('run.mcap', false);
@@ -186,7 +186,7 @@ test('over the replay of a recording without a world the place is that of the wh
   } finally {
     await player.end();
   }
-}, 120_000);
+});
 
 test('no page has complained', () => {
   assert.deepEqual(there.look.complaints, []);

@@ -191,7 +191,7 @@ test('a configuration is refused at its line, replaced, and comes back by undo',
   await eventually('the one before is in force', () => there.robot.read('config') === before);
   await expect.poll(() => text.textContent()).not.toContain('trikfs.lamp');
   // What failed is not there any more.
-  await expect.poll(() => page.getByRole('list', { name: 'Errors' }).count(), { timeout: 10_000 }).toBe(0);
+  await expect.poll(() => page.getByRole('list', { name: 'Errors' }).count()).toBe(0);
   await page.getByRole('button', { name: 'Redo' }).click();
   await eventually('the new one is in force again', () => there.robot.read('config').includes('lamp'));
   await page.getByRole('button', { name: 'Undo' }).click();

@@ -115,7 +115,7 @@ test('the last minutes are at any moment, a stop works there, and now is now', a
   await slider(page).waitFor({ state: 'detached' });
   await until('the motor now', shown(page), '0');
   await page.context().close();
-}, 120_000);
+});
 
 test('a recording that was saved is opened, and compared with the robot', async () => {
   there.robot.write('motors/M3/value', 30);
@@ -149,7 +149,7 @@ test('a recording that was saved is opened, and compared with the robot', async 
   await give(page, 'Another recording', file);
   await page.getByText('Nodes that differ: 0').waitFor();
   await page.context().close();
-}, 120_000);
+});
 
 test('what is no recording is refused with its place', async () => {
   const page = await there.look.open(`${there.robot.url}#instruments`);
@@ -163,7 +163,7 @@ test('what is no recording is refused with its place', async () => {
   await page.getByText('cut off or damaged at byte 8').waitFor();
   await isUsable(page, 'what is wrong');
   await page.context().close();
-}, 60_000);
+});
 
 test('no page has complained', () => {
   assert.deepEqual(there.look.complaints, []);

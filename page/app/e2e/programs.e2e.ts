@@ -89,20 +89,20 @@ test('a diagram has breakpoints before it runs, and takes new values in its bloc
   await page.locator('aside').getByRole('alert').getByText('Delay').waitFor();
   const saved = () => page.evaluate(async () => (await fetch('/diagram/count.qrs')).text());
   expect(await saved()).not.toContain('100 +');
-  await delay.fill('77000');
+  await delay.fill('777000');
   await delay.press('Enter');
-  await expect.poll(saved).toContain('77000');
-  await page.locator('g[data-id*=Timer] text', { hasText: '77000' }).waitFor();
+  await expect.poll(saved).toContain('777000');
+  await page.locator('g[data-id*=Timer] text', { hasText: '777000' }).waitFor();
   await page.getByRole('button', { name: 'Continue' }).click();
-  // It waits as long as is written there now.
+  // It waits as long as is written there now; what is left of it begins with 7 for more than a minute.
   await page
     .locator('aside')
-    .getByText(/waits 7\d\.\d\d s/)
+    .getByText(/waits 7\d\d\.\d\d s/)
     .waitFor();
   expect(await barriers(page)).toEqual([]);
   await page.getByRole('button', { name: 'Undo the change' }).click();
   await page.locator('g[data-id*=Timer] text', { hasText: /^100$/ }).waitFor();
-  expect(await saved()).not.toContain('77000');
+  expect(await saved()).not.toContain('777000');
   await page.getByRole('button', { name: 'Fit' }).click();
   await page.getByRole('button', { name: 'Stop', exact: true }).click();
   await page.context().close();

@@ -11,8 +11,8 @@ import { join, resolve } from 'node:path';
 
 const TRIK = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const START_MS = 20_000;
-const END_MS = 15_000;
+/** How long anything that must happen may take: beside other work a browser and a robot need many seconds. */
+const END_MS = 60_000;
 
 /** A virtual robot that runs. */
 export class Robot {
@@ -176,7 +176,7 @@ export class Robot {
   }
 
   async #ready() {
-    await eventually('the robot is ready', () => this.url !== '' || this.#child.exitCode !== null, START_MS);
+    await eventually('the robot is ready', () => this.url !== '' || this.#child.exitCode !== null);
     if (this.url === '') throw new Error(`there is no robot: ${this.#said}`);
   }
 
@@ -219,7 +219,7 @@ export class ClassPage {
   static async start(home, lines) {
     const page = new ClassPage(home, lines);
     const child = page.#child;
-    await eventually('the class is served', () => page.url !== '' || child.exitCode !== null, START_MS);
+    await eventually('the class is served', () => page.url !== '' || child.exitCode !== null);
     if (page.url === '') throw new Error(`there is no page: ${page.#said}`);
     return page;
   }
@@ -261,7 +261,7 @@ export class Judging {
   static async start(folder, ...args) {
     const judging = new Judging(folder, args);
     const { child } = judging;
-    await eventually('the marks are served', () => judging.url !== '' || child.exitCode !== null, START_MS);
+    await eventually('the marks are served', () => judging.url !== '' || child.exitCode !== null);
     if (judging.url === '') throw new Error(`there is no page: ${judging.said}`);
     return judging;
   }
@@ -369,6 +369,7 @@ export class Look {
   async open(url, options = {}, prepare = () => undefined) {
     const viewport = { width: 1400, height: 900 };
     const context = await this.#browser.newContext({ locale: 'en-US', viewport, ...options });
+    context.setDefaultTimeout(END_MS);
     const page = await context.newPage();
     page.on('pageerror', (error) => this.complaints.push(error.stack ?? error.message));
     page.on('console', (message) => {

@@ -44,7 +44,7 @@ test('starts, failures and stops of programs are said in Russian', async () => {
   assert.equal(await page.getByText(/has (started|failed|ended)|was stopped/).count(), 0);
   await usable(page, 'russian-program');
   await page.context().close();
-}, 120_000);
+});
 
 test('a refusal of the server and a fault of a sensor are said in Russian', async () => {
   const page = await russian('#instruments');
@@ -76,7 +76,7 @@ test('a refusal of the server and a fault of a sensor are said in Russian', asyn
   await usable(page, 'russian-fault');
   await page.context().close();
   await other.context().close();
-}, 120_000);
+});
 
 test('no page has complained', () => {
   assert.deepEqual(there.look.complaints, []);

@@ -23,7 +23,7 @@ test('a slider goes through a recording, and the instruments show its values', a
     await slider.focus();
     await page.keyboard.press('End');
     await eventually('the end', async () =>
-      /^0:0([34])/.test((await slider.getAttribute('aria-valuetext')) ?? ''),
+      /^0:(0[3-9]|[1-5]\d)/.test((await slider.getAttribute('aria-valuetext')) ?? ''),
     );
     await until('the motor at the end', motor, '33');
     await page.keyboard.press('Home');
@@ -39,4 +39,4 @@ test('a slider goes through a recording, and the instruments show its values', a
     await player.end();
     await robot.end();
   }
-}, 90_000);
+});

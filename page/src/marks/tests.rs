@@ -69,7 +69,7 @@ fn viewer(page: &MarksPage, language: &str) -> Socket {
     let (at, cookie) = (page.address(), cookie(page));
     let mut stream = TcpStream::connect(at).unwrap();
     stream
-        .set_read_timeout(Some(Duration::from_secs(10)))
+        .set_read_timeout(Some(Duration::from_secs(60)))
         .unwrap();
     let request = format!(
         "GET /socket?language={language} HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\n\

@@ -98,7 +98,7 @@ impl Listener for Ear {
 /// The next sample, whatever else comes.
 fn sample(heard: &Receiver<Entry>) -> (Arc<Known>, u8) {
     loop {
-        let entry = heard.recv_timeout(Duration::from_secs(30)).unwrap();
+        let entry = heard.recv_timeout(Duration::from_secs(60)).unwrap();
         if let Entry::Sample(known, _, tuple) = entry {
             return (known, tuple[0]);
         }
@@ -213,7 +213,7 @@ impl Listener for Asking {
 
 /// Waits until something holds.
 fn eventually(what: &str, holds: impl Fn() -> bool) {
-    let end = Instant::now() + Duration::from_secs(30);
+    let end = Instant::now() + Duration::from_secs(60);
     while !holds() {
         assert!(Instant::now() < end, "{what}");
         std::thread::yield_now();

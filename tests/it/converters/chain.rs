@@ -71,7 +71,7 @@ fn a_node_reads_another_node_after_its_converter() {
 expect('EAGAIN', os.read, fd, 1)
 for number in range(100):
     os.write(pipe, bytes([number]))
-    assert ready(fd, ms=10000)
+    assert ready(fd, ms=60000)
     assert os.read(fd, 1) == bytes([number + 3])
     assert os.read(other, 1) == bytes([number + 2])
     assert os.read(first, 1) == bytes([number + 1])
@@ -169,16 +169,16 @@ os.write(left, b'LL')
 assert ready(fd, ms=30) == []
 expect('EAGAIN', os.read, fd, 4)
 os.write(right, b'R')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 100) == b'LLRs'
 with open(D + '/state', 'w') as file: file.write('t')
 os.write(right, b'r')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 100) == b'LLrt'
 os.write(left, b'l')
 assert ready(fd, ms=30) == []
 os.write(left, b'l')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 100) == b'llrt'
 ",
     );

@@ -30,7 +30,7 @@ expect('EAGAIN', os.read, fd, 4)
 os.write(still, b'x')
 eventually(lambda: open(M + '/still/bin_data', 'rb').read() == b'x')
 os.write(fast, b'2')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 4) == b'2asx'
 # The others alone make none, and the newest of them is what counts.
 os.write(slow, b'bc')
@@ -38,7 +38,7 @@ os.write(still, b'yz')
 eventually(lambda: open(M + '/still/bin_data', 'rb').read() == b'z')
 expect('EAGAIN', os.read, fd, 4)
 os.write(fast, b'3')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 4) == b'3csz'
 ",
     );

@@ -166,7 +166,10 @@ fn whatever_machine_code_does_costs_its_own_node_an_error_and_no_other_node_its_
         }
         drop(over);
         let worst = watched.join().unwrap();
-        assert!(worst < Duration::from_secs(1), "a good node took {worst:?}");
+        assert!(
+            worst < Duration::from_secs(10),
+            "a good node took {worst:?}"
+        );
     });
     assert_eq!(m.daemon(), daemon, "the daemon was not replaced");
     let log = m.log();

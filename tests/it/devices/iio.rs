@@ -59,7 +59,7 @@ assert ready(one, ms=30) == []
 os.write(pipe, sample(4096, -1, -8192, 1 << 40))
 os.write(pipe, sample(1, 2, 3, 5))
 for fd in (one, two):
-    assert ready(fd, ms=10000)
+    assert ready(fd, ms=60000)
     assert read_exactly(fd, 40) == struct.pack('<iiiq', 4096, -1, -8192, 1 << 40) + struct.pack('<iiiq', 1, 2, 3, 5)
 assert read_exactly(linked, 8) == struct.pack('<ii', 4096, 1)
 os.write(pipe, sample(1, 2, 3, 5)[:5])

@@ -27,7 +27,7 @@ damaged[-1] ^= 1
 for byte in b'noise' + packet(b'first') + bytes(damaged) + packet(b'') + b'\\xaa\\xff\\xff' + packet(b'last'):
     os.write(pipe, bytes([byte]))
 for fd in (one, two):
-    assert ready(fd, ms=10000)
+    assert ready(fd, ms=60000)
     assert read_exactly(fd, 96, 7) == tuple_of(b'first') + tuple_of(b'') + tuple_of(b'last')
 assert ready(one, ms=30) == []
 eventually(lambda: stat_of(M + '/lidar/stats', 'damaged') == 2, 'the count')

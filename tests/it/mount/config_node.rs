@@ -135,7 +135,7 @@ fn greed_and_loops_are_refused_while_the_tree_stays_alive() {
             let start = std::time::Instant::now();
             assert_eq!(m.read("zero/bin_data").unwrap(), [0; 4]);
             assert!(
-                start.elapsed() < std::time::Duration::from_secs(4),
+                start.elapsed() < std::time::Duration::from_secs(60),
                 "the loop held up a reader"
             );
             rounds += 1;

@@ -103,10 +103,11 @@ fn while_its_guardian_is_stopped_the_daemon_lets_actuators_rest_and_has_it_go_on
         eventually("rest", || m.board().content("motor") == [0, 7]);
         eventually("the guardian", || !processes::is_stopped(m.guardian()));
     }
-    assert!(m.log().contains(&format!(
+    let told = format!(
         "the guardian (process {}) was stopped: actuators were brought to rest, and it was told to go on",
         m.guardian()
-    )));
+    );
+    eventually("what is told of it", || m.log().contains(&told));
     let daemon = m.daemon();
     processes::signal(daemon, Signal::SIGKILL);
     comes_back(&m, daemon);
@@ -235,7 +236,7 @@ fn a_daemon_that_crashes_again_and_again_is_given_up() {
     }
     let status = m.wait();
     assert_eq!(status.code(), Some(3), "{}", m.complaints());
-    assert!(m.complaints().contains("giving up"), "{}", m.complaints());
+    eventually("what it says", || m.complaints().contains("giving up"));
     assert!(!m.is_mounted());
     assert_eq!(m.board().content("motor"), [0, 7]);
 }
@@ -261,11 +262,9 @@ int converter(int in_s, char *in, int out_s, char *out) { exit(0); }
             .any(|&pid| pid != daemon)
     });
     eventually("the tree", || m.read("good/units").is_ok());
-    assert!(
-        m.complaints().contains("ended from inside with status 0"),
-        "{}",
-        m.complaints()
-    );
+    eventually("what it says", || {
+        m.complaints().contains("ended from inside with status 0")
+    });
 }
 
 #[test]

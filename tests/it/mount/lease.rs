@@ -229,13 +229,13 @@ fn a_dead_mans_clock_brings_a_silent_holder_to_rest_and_takes_the_lease() {
         &m,
         "
 fd = take(os.O_RDWR)
-os.write(fd, b'priority 10 deadman_ms 1000\\n')
-assert owner().endswith(' priority 10 deadman_ms 1000\\n'), owner()
+os.write(fd, b'priority 10 deadman_ms 3000\\n')
+assert owner().endswith(' priority 10 deadman_ms 3000\\n'), owner()
 watcher = select.poll()
 watcher.register(fd, select.POLLIN)
 assert watcher.poll(0) == [(fd, select.POLLIN)]
 # Writes keep it, to the actuator or to owner, for longer than the clock.
-end = time.monotonic() + 1.6
+end = time.monotonic() + 4
 value = os.open(M + '/motor/value', os.O_WRONLY)
 writes = 0
 while time.monotonic() < end:
@@ -244,11 +244,11 @@ while time.monotonic() < end:
 start = time.monotonic()
 os.write(value, b'100 1')
 is_kept = owner() != '\\n' and state() == RUNS
-assert is_kept or time.monotonic() - start > 0.9
+assert is_kept or time.monotonic() - start > 2.9
 eventually(rests, 'rest')
 took = time.monotonic() - start
-assert took >= 1, took
-assert select.POLLERR & dict(watcher.poll(5000))[fd]
+assert took >= 3, took
+assert select.POLLERR & dict(watcher.poll(60000))[fd]
 eventually(lambda: owner() == '\\n')
 # It must ask again, and until then cannot move anything; all others can.
 expect('EBUSY', os.write, value, b'100 1')
@@ -312,7 +312,7 @@ def act():
     watcher = select.poll()
     watcher.register(fd, 0)
     os.write(tell, b'.')
-    ((_, events),) = watcher.poll(15000)
+    ((_, events),) = watcher.poll(60000)
     assert events & select.POLLERR and events & select.POLLHUP, events
     expect('EBUSY', put, 'motor/value', b'100 1')
     os.write(tell, b'.')

@@ -147,7 +147,7 @@ eventually(calm, 'no news')
 for number in range(100):
     tuple = struct.pack('<I', number)
     os.write(pipe, tuple)
-    assert ready(fd, ms=10000)
+    assert ready(fd, ms=60000)
     eventually(lambda: os.pread(fd, 4, 0) == tuple and ready(fd) == [], 'no news after reading')
     eventually(lambda: os.pread(unpolled, 4, 0) == tuple, 'the unpolled file')
 os.close(fd)

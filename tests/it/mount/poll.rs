@@ -49,21 +49,19 @@ fn a_poll_that_waits_wakes_when_data_comes() {
     for _ in range(5):
         seen = []
         def watch():
-            if wait == 'select': seen.append(select.select([fd], [], [], 10)[0] == [fd])
-            elif wait == 'poll': seen.append(ready(fd, ms=10000) == [select.POLLIN])
+            if wait == 'select': seen.append(select.select([fd], [], [], 60)[0] == [fd])
+            elif wait == 'poll': seen.append(ready(fd, ms=60000) == [select.POLLIN])
             else:
                 epoll = select.epoll()
                 epoll.register(fd, select.EPOLLIN)
-                seen.append(epoll.poll(10) == [(fd, select.EPOLLIN)])
+                seen.append(epoll.poll(60) == [(fd, select.EPOLLIN)])
         watcher = threading.Thread(target=watch)
         watcher.start()
         tid = watcher.native_id
         eventually(lambda: asleep(tid), 'a watcher that waits')
-        start = time.monotonic()
         os.write(pipe, b'abcd')
         watcher.join()
         assert seen == [True], (wait, seen)
-        assert time.monotonic() - start < 5
         assert os.read(fd, 4) == b'abcd'
 ",
     );
@@ -78,7 +76,7 @@ epoll.register(fd, select.EPOLLIN)
 assert epoll.poll(0) == []
 os.write(pipe, b'abcdefgh')
 for _ in range(3):
-    assert epoll.poll(10) == [(fd, select.EPOLLIN)]
+    assert epoll.poll(60) == [(fd, select.EPOLLIN)]
 assert os.read(fd, 4) == b'abcd'
 assert epoll.poll(0) == [(fd, select.EPOLLIN)]
 assert os.read(fd, 3) == b'efg'
@@ -99,7 +97,7 @@ epoll.register(fd, select.EPOLLIN | select.EPOLLET)
 assert epoll.poll(0) == []
 for turn in range(20):
     os.write(pipe, b'abcd')
-    assert epoll.poll(10) == [(fd, select.EPOLLIN)], turn
+    assert epoll.poll(60) == [(fd, select.EPOLLIN)], turn
     if turn % 3:
         # Read to the end, as edge-triggered programs do.
         while True:
@@ -123,7 +121,7 @@ for _ in range(200):
         written += 1
     while given < written // 4:
         if rng.random() < 0.5:
-            assert ready(fd, ms=10000) == [select.POLLIN]
+            assert ready(fd, ms=60000) == [select.POLLIN]
         else:
             eventually(lambda: ready(fd), 'readiness')
         assert os.read(fd, 4) == struct.pack('<I', given * 4 + 3)
@@ -167,15 +165,15 @@ fn the_end_of_a_source_is_readable() {
         PLAIN,
         "os.write(pipe, b'abcd')
 os.close(pipe)
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 4) == b'abcd'
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 4) == b''
 assert ready(fd) == []
 expect('EAGAIN', os.read, fd, 4)
 pipe = feed('in')
 os.write(pipe, b'efgh')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 assert os.read(fd, 4) == b'efgh'
 ",
     );
@@ -187,7 +185,7 @@ fn a_failing_converter_makes_its_file_readable_because_a_read_does_not_wait() {
         "trikfs = { n = { src = '$DIR/in', input_tuple_size = 1, output_tuple_size = 1,
           converter = function(a_s, a, b_s, b) error('no', 0) end } }",
         "os.write(pipe, b'a')
-assert ready(fd, ms=10000)
+assert ready(fd, ms=60000)
 expect('EIO', os.read, fd, 1)
 assert ready(fd) == []
 expect('EAGAIN', os.read, fd, 1)
@@ -248,7 +246,7 @@ for name in ('one', 'two'):
     with open(M + '/config', 'w') as file: file.write(\"trikfs_log('%s'); trikfs = {}\" % name)
     seen = b''
     while name.encode() not in seen:
-        assert epoll.poll(10)
+        assert epoll.poll(60)
         while True:
             try: seen += os.read(fd, 10)
             except BlockingIOError: break

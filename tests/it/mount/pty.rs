@@ -15,7 +15,7 @@ one, two = open_ro(M + '/n/device'), open_ro(M + '/n/device', os.O_NONBLOCK)
 odd = b'\\x03\\x04\\x1a\\x11\\x13\\r\\n\\x00\\xff\\x7f'
 os.write(master, odd)
 assert read_exactly(one, len(odd)) == odd
-assert ready(two, ms=10000)
+assert ready(two, ms=60000)
 assert read_exactly(two, len(odd), 3) == odd
 # No echo: the robot would take it for an answer.
 assert ready(master) == []

@@ -32,7 +32,7 @@ kept, gone = open_ro(M + '/kept/device', os.O_NONBLOCK), [open_ro(M + '/changed/
 sink = os.open(M + '/changed/device', os.O_WRONLY)
 pipe = feed('kept')
 os.write(pipe, b'aaaabb')
-assert ready(kept, ms=10000)
+assert ready(kept, ms=60000)
 assert os.read(kept, 3) == b'aaa'
 for fd in gone: ready(fd)
 with open(D + '/new') as new, open(M + '/config', 'w') as config: config.write(new.read())
@@ -42,7 +42,7 @@ for fd in gone:
 expect('ESTALE', os.write, sink, b'abcd')
 assert os.read(kept, 3) == b'a'
 os.write(pipe, b'bb')
-assert ready(kept, ms=10000)
+assert ready(kept, ms=60000)
 assert os.read(kept, 4) == b'bbbb'
 assert ready(open_ro(M + '/changed/device')) == []
 assert open(M + '/added/bin_data', 'rb').read() == bytes(4)
@@ -58,7 +58,7 @@ fn a_reader_that_waits_on_a_changed_node_is_told() {
     let Some(m) = with_pipes(TWO) else { return };
     m.python(
         "def wait(): expect('ESTALE', os.read, fd, 4)
-def poll(): assert ready(fd, ms=10000)[0] & select.POLLERR
+def poll(): assert ready(fd, ms=60000)[0] & select.POLLERR
 for action in (wait, poll):
     fd = open_ro(M + '/changed/device')
     child = forked(action)

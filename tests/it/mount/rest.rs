@@ -22,7 +22,7 @@ trikfs = {
   servo = { src = pwm{ chip = '/sys/class/pwm/pwmchip2', channel = 1, period_ns = 20000000 }, input_tuple_size = 4,
     format = 'u32 duty', rest = { 0 } },
   lamp = { src = gpio{ number = 56, direction = 'out' }, input_tuple_size = 1, rest = { 1 } },
-  a_hanging = { src = byte('/silent', 0x15), input_tuple_size = 1, rest = { 0 }, timeout_ms = 2000 },
+  a_hanging = { src = byte('/silent', 0x15), input_tuple_size = 1, rest = { 0 }, timeout_ms = 6000 },
   a_gone = { src = byte('/nothing', 0x15), input_tuple_size = 1, rest = { 0 } },
   absent = { src = absent{ reason = 'not on this board' }, input_tuple_size = 1, rest = { 0 } },
 }";
@@ -108,7 +108,7 @@ for victim in range(2):
     os.kill(before, signal.SIGKILL)
     eventually(rests, 'rest')
     took = time.monotonic() - begin
-    assert took < 1.5, 'others waited for the bus that hangs: %f' % took
+    assert took < 5, 'others waited for the bus that hangs: %f' % took
     comes_back(before)
 drive()
 os.kill({guardian}, signal.SIGKILL)
@@ -142,7 +142,7 @@ thread = threading.Thread(target=lambda: done.append(error_of(stop)))
 thread.start()
 eventually(rests, 'rest')
 took = time.monotonic() - begin
-assert took < 1.5, took
+assert took < 5, took
 thread.join()
 assert done[0] in ('ENODEV', 'ETIMEDOUT'), done
 assert text(M + '/absent/fault') == ''

@@ -443,16 +443,17 @@ fn what_a_source_gives_is_in_a_ring_of_its_own_if_that_is_asked_for() {
     let mut raw = Reader::open_raw(m.root(), "s").expect("a ring");
     let mut samples = open(&m, "s");
     let mut tuple = Vec::new();
-    let mut pairs = Vec::new();
-    eventually("four tuples", || {
-        while let Step::Event(event) = raw.next_event(&mut tuple) {
-            pairs.push((event.time_ns, event.errno, tuple.clone()));
-        }
-        pairs.len() >= 4
-    });
     let mut after = Vec::new();
-    while let Step::Event(event) = samples.next_event(&mut tuple) {
-        after.push((event.time_ns, event.errno, tuple.clone()));
+    eventually("four samples", || {
+        while let Step::Event(event) = samples.next_event(&mut tuple) {
+            after.push((event.time_ns, event.errno, tuple.clone()));
+        }
+        after.len() >= 4
+    });
+    // Later than the samples, which come after their bytes.
+    let mut pairs = Vec::new();
+    while let Step::Event(event) = raw.next_event(&mut tuple) {
+        pairs.push((event.time_ns, event.errno, tuple.clone()));
     }
     // What the converter refuses is no failure of the source.
     assert!(

@@ -147,7 +147,7 @@ def fill():
     for _ in range(1000): write('slow/device', bytes(4096))
 start = time.monotonic()
 expect('ETIMEDOUT', fill)
-assert time.monotonic() - start < 5
+assert time.monotonic() - start < 60
 ",
     );
     assert!(

@@ -128,7 +128,10 @@ pub(super) struct Watched {
     /// The main diagram that is run, if it is not the first one.
     diagram: Option<String>,
     gone: WhenGone,
+    /// What is sent.
     seen: FileVersion,
+    /// What it was at the last look.
+    last: FileVersion,
     at: Instant,
     locale: Locale,
 }
@@ -153,6 +156,7 @@ impl Watched {
             diagram: diagram.map(str::to_owned),
             gone,
             seen: look(path),
+            last: look(path),
             at: Instant::now(),
             locale,
         })
@@ -165,8 +169,10 @@ impl Watched {
         }
         self.at = Instant::now();
         let now = look(&self.path);
+        // An editor may be writing it: half of a program can be one, too.
+        let is_written = std::mem::replace(&mut self.last, now) == now;
         // Editors may write a new file and then give it the name: in between there is none.
-        if now.is_none() || now == self.seen {
+        if now.is_none() || now == self.seen || !is_written {
             return None;
         }
         self.seen = now;
@@ -232,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_save_is_sent_once_and_only_diagrams_are_watched() {
+    fn a_save_is_sent_once_when_it_is_written_and_only_diagrams_are_watched() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.qrs");
         std::fs::write(&path, "one").unwrap();
@@ -240,8 +246,12 @@ mod tests {
         let long_ago = Instant::now().checked_sub(ms(60_000)).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
-        std::fs::write(&path, "another").unwrap();
-        assert_eq!(watched.save(), None, "it has just looked");
+        for text in ["an", "another"] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(watched.save(), None, "it has just looked");
+            watched.at = long_ago;
+            assert_eq!(watched.save(), None, "it may be written still");
+        }
         watched.at = long_ago;
         let [file, patch] = watched.save().unwrap();
         assert_eq!(file, b"file:a.qrs:another");

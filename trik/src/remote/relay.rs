@@ -185,7 +185,7 @@ mod tests {
 
     const OWN: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
     /// Longer than anything takes that works.
-    const LIFE: Duration = Duration::from_secs(20);
+    const LIFE: Duration = Duration::from_secs(60);
 
     fn connection(port: u16) -> TcpStream {
         let stream = TcpStream::connect((OWN, port)).expect("a connection");

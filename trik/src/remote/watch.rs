@@ -81,9 +81,6 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
     let mut picture = Picture::new(listing, io::stdout().is_terminal(), args.language);
     let mut has_seen = false;
     for tag in 1u64.. {
-        if until.is_some_and(|until| Instant::now() >= until) {
-            break;
-        }
         let answer = look(&mut link, tag, &mut picture.control)?;
         if let Some(why) = why_not(&answer) {
             let is_end = has_seen && why == news::NO_DIAGRAM;
@@ -98,6 +95,10 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
             picture
                 .show(&told)
                 .map_err(|error| Error::system("standard output", error))?;
+        }
+        // However short the time is, there is one look.
+        if until.is_some_and(|until| Instant::now() >= until) {
+            break;
         }
         let next = Instant::now() + PAUSE;
         while Instant::now() < next {

@@ -122,6 +122,8 @@ impl Python {
     }
 
     fn start(&mut self) -> io::Result<()> {
+        // A busy machine may take long to start it: that is of the time of the run, which others measure too.
+        self.until = Instant::now() + self.longest;
         let (ours, theirs) = UnixStream::pair()?;
         let folder = self.file.parent().unwrap_or(Path::new("/"));
         let arguments = ["-s", "-B", "-c", BOOT];
@@ -133,7 +135,6 @@ impl Python {
             .stderr(Stdio::null())
             .process_group(0)
             .spawn()?;
-        self.until = Instant::now() + self.longest;
         let mut channel = ours;
         channel.set_write_timeout(Some(self.longest))?;
         let program = format!("{}\n{}", self.file.display(), self.text);

@@ -3,6 +3,7 @@
 use crate::programs::Reachable;
 use crate::rig::{Home, Robot};
 use harness::eventually;
+use harness::wait::SOON;
 use lang_diagram::sketch::Sketch;
 use needs::Need;
 use nix::sys::signal::{Signal, kill};
@@ -12,7 +13,6 @@ use std::net::TcpStream;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::Duration;
 
 /// A bridge that serves, and is asked to end by SIGINT.
 struct Bridge {
@@ -45,8 +45,7 @@ impl Bridge {
     fn text(&self) -> String {
         let mut text = String::new();
         let mut client = TcpStream::connect(&self.address).expect("a server");
-        let most = Some(Duration::from_secs(10));
-        client.set_read_timeout(most).expect("a limit");
+        client.set_read_timeout(Some(SOON)).expect("a limit");
         let request = b"GET /metrics HTTP/1.1\r\nHost: robot\r\n\r\n";
         client.write_all(request).expect("sent");
         client.read_to_string(&mut text).expect("an answer");

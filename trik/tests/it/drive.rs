@@ -205,7 +205,8 @@ fn a_mistake_of_the_caller_is_no_fault_of_the_motor() {
     assert_eq!(refused.raw_os_error(), Some(libc::ERANGE));
     assert_eq!(robot.read("motors/left/fault").expect("a text"), "");
     let reason = "motors/M3: caller: duty_cycle is -100 to 100, not 200";
-    assert!(robot.sh("timeout 1 cat log").stdout.contains(reason));
+    let log = robot.log();
+    assert!(log.contains(reason), "{log}");
 }
 
 #[test]

@@ -87,13 +87,7 @@ fn after_a_kill_of_the_daemon_motors_rest_and_the_tree_comes_back() {
     processes::signal(daemon, Signal::SIGKILL);
     eventually("rest", || rests(&robot));
     comes_back(&robot, daemon);
-    assert!(
-        robot
-            .complaints()
-            .contains("killed by SIGKILL; starting it again"),
-        "{}",
-        robot.complaints()
-    );
+    robot.complains("killed by SIGKILL; starting it again");
 }
 
 #[test]
@@ -106,13 +100,7 @@ fn after_a_kill_of_the_guardian_motors_rest_and_the_tree_comes_back() {
         !processes::is_alive(guardian) && !processes::is_alive(daemon)
     });
     comes_back(&robot, daemon);
-    assert!(
-        robot
-            .complaints()
-            .contains("the guardian of the tree was ended by signal: 9"),
-        "{}",
-        robot.complaints()
-    );
+    robot.complains("the guardian of the tree was ended by signal: 9");
 }
 
 #[test]

@@ -281,14 +281,15 @@ fn positions_are_reached_by_the_ticks_of_the_encoder() {
 #[test]
 fn a_timed_run_ends_by_itself_and_ramps_are_told() {
     let Some((robot, view)) = seen() else { return };
-    view.run(LEFT, &[("speed_sp", 500), ("time_sp", 1500)], "run-timed");
+    // Long enough to be seen on a busy machine.
+    view.run(LEFT, &[("speed_sp", 500), ("time_sp", 4000)], "run-timed");
     assert_eq!(view.state(LEFT), "running");
     view.until_done(LEFT);
     assert!(robot.turned_deg(3) > 50.0);
     assert_eq!(robot.duty(3).unwrap(), 0);
     view.run(
         LEFT,
-        &[("ramp_up_sp", 4000), ("ramp_down_sp", 4000)],
+        &[("ramp_up_sp", 8000), ("ramp_down_sp", 8000)],
         "run-forever",
     );
     // Its next tick begins the ramp.
@@ -388,7 +389,7 @@ fn who_polls_the_state_is_woken_when_it_changes_and_not_before() {
         "nothing has changed"
     );
     let start = Instant::now();
-    view.run(LEFT, &[("speed_sp", 300), ("time_sp", 2000)], "run-timed");
+    view.run(LEFT, &[("speed_sp", 300), ("time_sp", 4000)], "run-timed");
     assert!(poll_pri(&file).contains(PollFlags::POLLPRI | PollFlags::POLLERR));
     assert_eq!(read(&mut file), "running");
     // Woken by the end of the run, long before the time limit of the call.

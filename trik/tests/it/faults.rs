@@ -32,10 +32,10 @@ fn what_has_never_spoken_on_a_fresh_robot_says_so_at_once() {
         "gamepad/text/value",
         "gamepad/wheel/value",
     ];
-    // The least of some, for a machine that is busy.
+    // The least of some, for a machine that is busy; who waits for a sample that does not come waits for a second.
     let soon = |name: &str, all: &[(i32, Duration)]| {
         let least = all.iter().map(|(_, time)| *time).min();
-        let limit = Duration::from_millis(50);
+        let limit = Duration::from_millis(500);
         assert!(least.is_some_and(|time| time <= limit), "{name}: {all:?}");
     };
     for name in silent {
@@ -134,24 +134,26 @@ fn a_slow_bus_does_not_delay_what_is_not_on_it() {
     let Some(robot) = robot(&[]) else { return };
     eventually("a distance", || robot.errno("sensors/D1/value") == 0);
     robot.fault(&["i2c-2", "slow", "300"]);
-    let began = Instant::now();
-    let mut motor = std::process::Command::new("sh")
-        .args(["-c", "echo 10 > motors/M3/value"])
-        .current_dir(&robot.root)
-        .spawn()
-        .expect("a shell");
-    let mut slowest = Duration::ZERO;
-    while motor.try_wait().expect("a child").is_none() && began.elapsed() < Duration::from_secs(10)
-    {
-        let start = Instant::now();
-        assert_eq!(robot.errno("sensors/D1/value"), 0);
-        slowest = slowest.max(start.elapsed());
-    }
-    assert!(
-        began.elapsed() >= Duration::from_millis(250),
-        "the bus was not slow"
-    );
-    assert!(slowest < Duration::from_millis(200), "{slowest:?}");
+    // A busy machine makes a read slow now and then; behind the bus one would be slow each time.
+    eventually("reads beside a slow bus", || {
+        let began = Instant::now();
+        let mut motor = std::process::Command::new("sh")
+            .args(["-c", "echo 10 > motors/M3/value"])
+            .current_dir(&robot.root)
+            .spawn()
+            .expect("a shell");
+        let mut slowest = Duration::ZERO;
+        while motor.try_wait().expect("a child").is_none() {
+            let start = Instant::now();
+            assert_eq!(robot.errno("sensors/D1/value"), 0);
+            slowest = slowest.max(start.elapsed());
+        }
+        assert!(
+            began.elapsed() >= Duration::from_millis(250),
+            "the bus was not slow"
+        );
+        slowest < Duration::from_millis(200)
+    });
     robot.fault(&["i2c-2", "--clear"]);
 }
 

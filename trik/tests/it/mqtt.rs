@@ -3,21 +3,23 @@
 //! Owns the broker. What a robot says is read by `mosquitto_sub`, and commands are sent by `mosquitto_pub`.
 
 use crate::programs::{Reachable, Running};
-use crate::rig::Home;
+use crate::rig::{Home, loopback};
 use harness::{eventually, processes};
 use needs::Need;
 use nix::sys::signal::Signal;
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 const ROBOT: &str = "trik/7b/anna";
+/// The port of each broker, at an address of its own.
+const PORT: u16 = 1883;
 
 /// A broker that is killed with the test.
 struct Broker {
     process: Child,
     program: PathBuf,
-    port: u16,
+    ip: String,
     config: String,
 }
 
@@ -33,17 +35,15 @@ impl Broker {
             Need::Tools.missing("mosquitto is not installed");
             return None;
         };
-        let free = TcpListener::bind("127.0.0.1:0").expect("a port");
-        let port = free.local_addr().expect("an address").port();
-        drop(free);
-        let text = format!("listener {port} 127.0.0.1\nuser root\n{more}\n");
+        let ip = loopback();
+        let text = format!("listener {PORT} {ip}\nuser root\n{more}\n");
         let file = home.0.file("broker.conf", text);
         let config = file.to_str().expect("UTF-8").to_owned();
-        let process = started(&program, &config, port);
+        let process = started(&program, &config, &ip);
         Some(Self {
             process,
             program,
-            port,
+            ip,
             config,
         })
     }
@@ -54,12 +54,12 @@ impl Broker {
     }
 
     fn again(&mut self) {
-        self.process = started(&self.program, &self.config, self.port);
+        self.process = started(&self.program, &self.config, &self.ip);
     }
 
     fn client(&self, program: &str, words: &[&str]) -> Command {
         let mut command = Command::new(program);
-        command.args(["-h", "127.0.0.1", "-p", &self.port.to_string(), "-V", "5"]);
+        command.args(["-h", &self.ip, "-p", &PORT.to_string(), "-V", "5"]);
         command.args(words);
         command
     }
@@ -71,6 +71,14 @@ impl Broker {
         Running::new(&mut self.client("mosquitto_sub", &words))
     }
 
+    /// Says a power of the motor again and again, as one who drives, until it is seen.
+    fn drives(&self, percent: &str, mut is_seen: impl FnMut() -> bool) {
+        eventually("a motor that runs", || {
+            self.says("set/motors/M3", percent, &[]);
+            is_seen()
+        });
+    }
+
     fn says(&self, command: &str, text: &str, words: &[&str]) {
         let topic = format!("{ROBOT}/cmd/{command}");
         let words = [words, &["-t", &topic, "-m", text]].concat();
@@ -79,7 +87,7 @@ impl Broker {
     }
 
     fn bridge(&self, home: &Home, words: &[&str]) -> Running {
-        let at = format!("127.0.0.1:{}", self.port);
+        let at = format!("{}:{PORT}", self.ip);
         let first = [
             "bridge", "mqtt", "--broker", &at, "--class", "7b", "--name", "anna",
         ];
@@ -87,16 +95,14 @@ impl Broker {
     }
 }
 
-fn started(program: &Path, config: &str, port: u16) -> Child {
+fn started(program: &Path, config: &str, ip: &str) -> Child {
     let child = Command::new(program)
         .args(["-c", config])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .expect("mosquitto");
-    eventually("a broker", || {
-        TcpStream::connect(("127.0.0.1", port)).is_ok()
-    });
+    eventually("a broker", || TcpStream::connect((ip, PORT)).is_ok());
     child
 }
 
@@ -125,7 +131,6 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
     let Some(broker) = Broker::new(home, "allow_anonymous true") else {
         return;
     };
-    // Long enough for a busy computer to say the value.
     let words = ["--control", "--home-assistant", "--deadman", "5000"];
     let mut bridge = broker.bridge(home, &words);
     bridge.says(": connected");
@@ -133,9 +138,8 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
     let heard = broker.listener(&[]);
     heard.says("trik/7b/anna/life online");
     heard.says("tel/sensors/D1 {\"");
-    broker.says("set/motors/M3", "40", &[]);
+    broker.drives("40", || heard.said().contains("\"duty_cycle\":40"));
     heard.says("tel/motors/M3 {\"time\"");
-    heard.says("\"duty_cycle\":40");
     heard.says("answer {\"command\":\"set/motors/M3\",\"ok\":true}");
     // Nobody says anything more.
     comes_to_rest(&robot, "rest after a command that is not repeated");
@@ -172,7 +176,7 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
     });
     let found = broker.client(
         "mosquitto_sub",
-        &["-t", "homeassistant/#", "-C", "20", "-W", "20"],
+        &["-t", "homeassistant/#", "-C", "20", "-W", "80"],
     );
     let found = harness::tools::run(&mut { found }, b"").good();
     assert!(
@@ -180,8 +184,7 @@ fn a_broker_has_the_newest_values_and_one_who_goes_on_saying_so_drives() {
         "{found}"
     );
     // A client that goes on to drive after a stop is refused.
-    broker.says("set/motors/M3", "30", &[]);
-    eventually("a motor that runs", || power(&robot) == 30.0);
+    broker.drives("30", || power(&robot) == 30.0);
     broker.says("stop", "", &[]);
     comes_to_rest(&robot, "rest after a stop");
     heard.says("answer {\"command\":\"stop\",\"ok\":true}");
@@ -239,8 +242,7 @@ fn a_stop_is_for_everybody_and_an_end_of_any_part_brings_to_rest() {
     // The broker dies.
     let bridge = broker.bridge(home, &["--control", "--deadman", "5000"]);
     bridge.says(": connected");
-    broker.says("set/motors/M3", "40", &[]);
-    eventually("a motor that runs", || power(&robot) == 40.0);
+    broker.drives("40", || power(&robot) == 40.0);
     broker.kill();
     comes_to_rest(&robot, "rest after the death of the broker");
     bridge.says("it is tried again");

@@ -220,6 +220,11 @@ impl Robot {
             .clone()
     }
 
+    /// Waits until this is written to standard error: it comes through a pipe and a thread, later than what the tree shows.
+    pub fn complains(&self, part: &str) {
+        eventually(part, || self.complaints().contains(part));
+    }
+
     /// The process that a person started.
     pub fn pid(&self) -> u32 {
         self.process.as_ref().expect("a process").id()

@@ -182,7 +182,7 @@ if pid == 0:
     for fd in (0, 1, 2):
         os.dup2(slave, fd)
     os.execv(program[0], program)
-said, during, deadline = b'', None, time.time() + 25
+said, during, deadline = b'', None, time.time() + 80
 while time.time() < deadline:
     if os.waitpid(pid, os.WNOHANG)[0]:
         break

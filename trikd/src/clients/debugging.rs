@@ -68,11 +68,6 @@ fn answer(tag: Option<u32>, why: Option<&str>) -> String {
 }
 
 impl Client {
-    /// Answers an order that is carried out.
-    pub fn done(&self, tag: u32) {
-        self.outbox.push(frame(&answer(Some(tag), None)));
-    }
-
     /// Answers an order that is not.
     pub fn not_done(&self, tag: Option<u32>, why: &str) {
         self.outbox.push(frame(&answer(tag, Some(why))));

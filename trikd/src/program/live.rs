@@ -128,6 +128,7 @@ impl Supervisor {
             Wish::Debugpy(place, path) => self.run_python(asked, &place, &path).await,
             Wish::Order(order) => self.order(asked, &order),
             Wish::Overtaken => self.refuse(asked, news::OVERTAKEN),
+            Wish::Left => self.around.clients.debug_done(asked),
         }
     }
 

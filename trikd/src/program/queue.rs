@@ -69,6 +69,8 @@ pub enum Wish {
     Order(String),
     /// It was to run a program, and somebody has stopped everything meanwhile.
     Overtaken,
+    /// Nothing more: it is answered when everything is done that was asked for before.
+    Left,
 }
 
 /// What the status shows of the program.

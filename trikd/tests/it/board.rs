@@ -303,6 +303,9 @@ fn a_gamepad_reaches_the_tree_and_a_tree_that_leaves_is_told() {
     });
     let mut control = Client::new(port("control"));
     control.sync();
+    // The end of the board may take longer than a client may be silent.
+    control.keep_alive();
+    telemetry.keep_alive();
     let Virtual { robot, up } = board;
     drop(up);
     control.send("stop");

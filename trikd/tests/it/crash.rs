@@ -5,8 +5,8 @@ use harness::{eventually, processes};
 use nix::sys::signal::Signal;
 use std::time::{Duration, Instant};
 
-/// What is noticed within a second has this much on a machine on which other tests run.
-const NOTICED: Duration = Duration::from_secs(5);
+/// What is noticed within a second has this much on a machine that is busy.
+const NOTICED: Duration = Duration::from_secs(60);
 
 #[test]
 fn a_killed_serving_process_leaves_rest_and_no_program_and_is_followed_by_another() {

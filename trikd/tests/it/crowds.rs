@@ -330,10 +330,12 @@ fn a_flood_of_questions_costs_little_and_questions_after_it_are_answered() {
             answers += 1;
         }
     }
-    println!("{answers} answers in {:?}", begin.elapsed());
+    let took = begin.elapsed();
+    println!("{answers} answers in {took:?}");
+    let most = 500.0 * took.as_secs_f64();
     assert!(
-        (1..=1000).contains(&answers),
-        "{answers} answers in two seconds"
+        answers > 0 && f64::from(answers) <= most,
+        "{answers} answers in {took:?}"
     );
     robot.client("control").sync();
     eventually("an answer after the flood", || asks().1);

@@ -1,6 +1,6 @@
 //! The debugger of diagrams on a robot: orders of several clients, motors at a stop, and what is lost with whom.
 
-use crate::rig::{Client, Robot, robot};
+use crate::rig::{Client, Robot, frame, robot};
 use harness::{eventually, processes};
 use lang_diagram::sketch::Sketch;
 use nix::sys::signal::Signal;
@@ -40,9 +40,7 @@ fn counting(body: &str) -> Save {
 }
 
 fn upload(client: &mut Client, name: &str, save: &Save) {
-    let head = format!("file:{name}:");
-    client.raw(format!("{}:{head}", head.len() + save.bytes.len()));
-    client.raw(&save.bytes);
+    crate::diagrams::upload(client, name, &save.bytes);
 }
 
 /// What M1 was told last.
@@ -119,37 +117,40 @@ fn a_diagram_begins_stopped_and_its_motors_rest_at_each_stop_and_come_back() {
         "0",
         "it was told 40 in this step, and it is over"
     );
+    // It counts beyond the breakpoint for as long as the motor is looked at.
+    expect(&mut client, 4, "set n=100", "\"value\":\"100\"");
     let order = format!("break {}\nif n == 3", save.ids[WAIT]);
     expect(
         &mut client,
-        4,
+        5,
         &order,
-        "{\"number\":2,\"to\":4,\"done\":true}",
+        "{\"number\":2,\"to\":5,\"done\":true}",
     );
-    expect(&mut client, 5, "continue", "\"state\":\"running\"");
+    expect(&mut client, 6, "continue", "\"state\":\"running\"");
     assert_eq!(motor(&robot), "40");
+    expect(&mut client, 7, "set n=1", "\"value\":\"1\"");
     let state = until_state(&mut client, "stopped");
     assert!(
         state.contains("\"reason\":\"breakpoint\",\"number\":2"),
         "{state}"
     );
     assert_eq!(motor(&robot), "0");
-    expect(&mut client, 6, "evaluate n * 100", "\"value\":\"300\"");
-    expect(&mut client, 7, "back", "\"state\":\"past\"");
-    expect(&mut client, 8, "evaluate n", "\"value\":\"2\"");
-    expect(&mut client, 9, "set n=50", "a debugger looks at the past");
-    expect(&mut client, 10, "present", "\"state\":\"stopped\"");
-    expect(&mut client, 11, "set n=50", "\"value\":\"50\"");
+    expect(&mut client, 8, "evaluate n * 100", "\"value\":\"300\"");
+    expect(&mut client, 9, "back", "\"state\":\"past\"");
+    expect(&mut client, 10, "evaluate n", "\"value\":\"2\"");
+    expect(&mut client, 11, "set n=50", "a debugger looks at the past");
+    expect(&mut client, 12, "present", "\"state\":\"stopped\"");
+    expect(&mut client, 13, "set n=50", "\"value\":\"50\"");
     assert_eq!(motor(&robot), "0", "being in the past moves nothing");
-    expect(&mut client, 12, "motors keep", "true");
+    expect(&mut client, 14, "motors keep", "true");
     assert_eq!(motor(&robot), "40");
-    expect(&mut client, 13, "motors rest", "true");
+    expect(&mut client, 15, "motors rest", "true");
     assert_eq!(motor(&robot), "0");
-    client.send("debug:14 detach");
-    answer(&mut client, 14);
+    client.send("debug:16 detach");
+    answer(&mut client, 16);
     client.until("print: 51\n");
     assert_eq!(motor(&robot), "40");
-    expect(&mut client, 15, "attach", "\"state\":\"running\"");
+    expect(&mut client, 17, "attach", "\"state\":\"running\"");
     robot.forget_rest();
     client.send("stop");
     until_state(&mut client, "gone");
@@ -510,6 +511,24 @@ fn motors_rest_when_anybody_is_killed_while_a_program_is_stopped() {
         program.iter().all(|pid| !processes::is_alive(*pid)) && robot.daemon() != daemon
     });
     assert_eq!(motor(&robot), "0");
+}
+
+#[test]
+fn who_leaves_is_answered_when_the_stop_before_it_is_done() {
+    let (robot, mut client, _) = counts(COUNTING);
+    expect(&mut client, 1, "attach", "true");
+    robot.forget_rest();
+    client.raw([frame("stop"), frame("debug:2 leave")].concat());
+    let mut has_stopped = false;
+    loop {
+        let told = client.next().expect("an answer");
+        has_stopped |= told.starts_with("info: count.qrs was stopped by a client");
+        if told.contains("\"to\":2,") {
+            assert!(told.contains("\"done\":true"), "{told}");
+            break;
+        }
+    }
+    assert!(has_stopped && robot.has_rested());
 }
 
 #[test]

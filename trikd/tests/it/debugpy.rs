@@ -1,8 +1,9 @@
 //! Programs in Python under a debugger: how they come to it, and what is told if they do not.
 
 use crate::rig::{Client, Robot, robot};
+use socket2::{Domain, Socket, Type};
 use std::io::Read;
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener};
 
 /// The answer to an order.
 fn ask(client: &mut Client, tag: u32, order: &str) -> String {
@@ -25,6 +26,15 @@ def connect(place):
         debugger.connect(place)
         debugger.sendall(b'Content-Length')
 ";
+
+/// A port of this machine that nobody else gets, and at which nobody listens.
+fn closed_door() -> (Socket, u16) {
+    let door = Socket::new(Domain::IPV4, Type::STREAM, None).expect("a socket");
+    let any = SocketAddr::from(([127, 0, 0, 1], 0));
+    door.bind(&any.into()).expect("a port");
+    let place = door.local_addr().expect("an address").as_socket();
+    (door, place.expect("an address of IP").port())
+}
 
 /// A robot with this debugpy and the program a.py.
 fn with_stand_in() -> (Robot, Client) {
@@ -62,9 +72,7 @@ fn a_program_in_python_says_its_secret_before_all_else() {
 #[test]
 fn a_program_that_does_not_reach_its_debugger_says_so_once_in_the_log() {
     let (robot, mut client) = with_stand_in();
-    let door = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let port = door.local_addr().expect("an address").port();
-    drop(door);
+    let (_door, port) = closed_door();
     ask(&mut client, 1, &format!("python {port}:x a.py"));
     let told = client.until("info: the debugger at ");
     assert!(told.ends_with("; trying again"), "{told}");
@@ -84,12 +92,11 @@ fn a_program_that_does_not_reach_its_debugger_says_so_once_in_the_log() {
 #[test]
 fn a_debugger_that_comes_late_is_reached() {
     let (_robot, mut client) = with_stand_in();
-    let door = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let place = door.local_addr().expect("an address");
-    drop(door);
-    ask(&mut client, 1, &format!("python {}:x a.py", place.port()));
+    let (door, port) = closed_door();
+    ask(&mut client, 1, &format!("python {port}:x a.py"));
     client.until("info: the debugger at ");
-    let door = TcpListener::bind(place).expect("the port again");
+    door.listen(1).expect("an open door");
+    let door = TcpListener::from(door);
     let (mut program, _) = door.accept().expect("the program");
     let mut all = String::new();
     program.read_to_string(&mut all).expect("what it says");

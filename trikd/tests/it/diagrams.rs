@@ -2,6 +2,7 @@
 
 use crate::rig::{Client, Robot, robot};
 use harness::eventually;
+use harness::wait::SOON;
 use lang_diagram::sketch::Sketch;
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
@@ -25,19 +26,17 @@ pub fn counting_by(body: &str) -> Vec<u8> {
     sketch.qrs().expect("a save")
 }
 
-/// Sends a save to a robot.
+/// Sends a save to a robot: at once, so that nothing of a client that is kept alive comes between.
 pub fn upload(client: &mut Client, name: &str, save: &[u8]) {
     let head = format!("file:{name}:");
-    client.raw(format!("{}:{head}", head.len() + save.len()));
-    client.raw(save);
+    let head = format!("{}:{head}", head.len() + save.len());
+    client.raw([head.as_bytes(), save].concat());
 }
 
 /// What is told of a diagram from now on, a line each.
 fn diagram_lines(robot: &Robot) -> impl Iterator<Item = String> {
     let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
-    stream
-        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
-        .unwrap();
+    stream.set_read_timeout(Some(SOON)).unwrap();
     stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
     let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
     assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
@@ -91,9 +90,7 @@ fn an_ending_in_capital_letters_says_the_same() {
 fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
     let robot = robot(&[]);
     let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
-    stream
-        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
-        .unwrap();
+    stream.set_read_timeout(Some(SOON)).unwrap();
     stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
     let mut curious = robot.client("control");
     curious.send("watch");

@@ -142,6 +142,8 @@ fn a_message_waits_for_the_next_program_until_a_stop() {
     client.send("file:second.py:script.wait(300)\nprint('got', mailbox.receive(False))");
     // Only those who are there hear of mail.
     client.sync();
+    // Python may take longer to begin than a robot may be silent.
+    mail.keep_alive();
     mail.send("register:8895:7");
     mail.send("data:one");
     client.until("mail: ");

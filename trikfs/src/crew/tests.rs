@@ -4,7 +4,7 @@ use super::*;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// One job: it says that it has begun, then waits for its end. Without channels it ends the crew.
 type Job = Option<(Sender<()>, Receiver<()>)>;

@@ -76,7 +76,7 @@ test('a number that is refused is said, and the one before is shown again', asyn
   one.turn('gain', NaN);
   expect(sent.filter((order) => order.do === 'write')).toHaveLength(1);
   one.written('n', 'alpha', 'out of range');
-  await vi.waitFor(() => expect(values(one)).toEqual([0.5, 3]));
+  await vi.waitFor(() => expect(values(one)).toEqual([0.5, 3]), 60_000);
   expect(one.wrong).toEqual({ alpha: 'out of range' });
   expect(one.turned).toBe(0);
   one.explain('n', 'alpha', 'params/alpha is a number from 0 to 1');

@@ -26,7 +26,7 @@ test('what was in force comes back by undo, and goes again by redo', async () =>
     expect(one.isApplying).toBe(true);
     inForce = { text, status: 'config ok: 2 nodes', faults: [] };
     one.configured(null);
-    await vi.waitFor(() => expect(one.status).toBe('config ok: 2 nodes'));
+    await vi.waitFor(() => expect(one.status).toBe('config ok: 2 nodes'), 60_000);
   }
   expect([one.versions, one.at]).toEqual([['a', 'b', 'c'], 2]);
   one.undo();

@@ -189,7 +189,7 @@ impl Viewer {
         let cookie = line.unwrap().split(';').next().unwrap();
         let mut stream = TcpStream::connect(at).unwrap();
         stream
-            .set_read_timeout(Some(Duration::from_secs(10)))
+            .set_read_timeout(Some(Duration::from_secs(60)))
             .unwrap();
         let request = format!(
             "GET /socket HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\

@@ -365,8 +365,12 @@ fn a_long_way_back_is_given_up_when_an_editor_pauses() {
     let points = json!({"breakpoints": [{"line": 3, "condition": "n < 0"}]});
     editor.good("setBreakpoints", points);
     for end in ["pause", "cancel"] {
-        editor.good("reverseContinue", json!({"threadId": 1}));
-        editor.good(end, json!({"threadId": 1}));
+        // Both at once, so that the way back is not over before.
+        let back = editor.post("reverseContinue", json!({"threadId": 1}));
+        let end_of_it = editor.post(end, json!({"threadId": 1}));
+        for seq in [back, end_of_it] {
+            assert_eq!(editor.answer(seq)["success"], true, "{end}");
+        }
         let stopped = editor.event("stopped");
         assert_eq!(stopped["reason"], "pause", "{end}: {stopped}");
         assert_eq!(editor.value("n"), last, "{end}");
@@ -478,6 +482,7 @@ fn a_run_begins_stopped_if_wanted_and_anew_with_its_breakpoints() {
 #[test]
 fn a_program_without_end_is_paused_while_it_runs() {
     let board = board();
+    board.file("count.qrs", long());
     let mut editor = Editor::start();
     editor.launch(&board, json!({"speed": 0.5}));
     editor.good("configurationDone", json!({}));

@@ -12,6 +12,9 @@ use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// What is noticed within a second has this much on a machine that is busy.
+const NOTICED: Duration = Duration::from_secs(60);
+
 /// The processes of the view of a robot: the one that keeps the mount, and the one that serves it.
 fn view_processes(robot: &Robot) -> (u32, u32) {
     let is_keeper = |pid: &u32| {
@@ -53,11 +56,7 @@ fn after_a_kill_of_either_process_motors_rest_and_the_view_comes_back() {
         });
         assert_eq!(view.state(LEFT), "");
     }
-    assert!(
-        robot
-            .complaints()
-            .contains("the view of ev3dev has ended; started again")
-    );
+    robot.complains("the view of ev3dev has ended; started again");
 }
 
 #[test]
@@ -71,17 +70,15 @@ fn a_serving_process_that_is_stopped_lets_its_motors_rest_and_the_view_comes_bac
     eventually("rest", || robot.duty(3).unwrap() == 0);
     let rested = begin.elapsed();
     println!("rest {rested:?} after the serving process was stopped");
-    // Within a second, with room for the other tests of this machine.
-    assert!(rested < Duration::from_secs(5), "{rested:?}");
+    // Within a second where nothing else computes; never, if it is not noticed.
+    assert!(rested < NOTICED, "{rested:?}");
     eventually("both processes gone", || {
         !processes::is_alive(keeper) && !processes::is_alive(server)
     });
     eventually("the view again", || {
         view.read(&format!("{LEFT}/state")).is_ok()
     });
-    let complaints = robot.complaints();
-    let told = "trikfs-ev3dev: the serving process was stopped and did not go on";
-    assert!(complaints.contains(told), "{complaints}");
+    robot.complains("trikfs-ev3dev: the serving process was stopped and did not go on");
 }
 
 #[test]
@@ -103,8 +100,8 @@ fn while_the_keeper_is_stopped_motors_rest_and_it_is_told_to_go_on() {
         });
         let rested = begin.elapsed();
         println!("rest {rested:?} after the keeper was stopped");
-        // Within a second, with room for the other tests of this machine.
-        assert!(rested < Duration::from_secs(5), "{rested:?}");
+        // Within a second where nothing else computes; never, if it is not noticed.
+        assert!(rested < NOTICED, "{rested:?}");
         eventually("a servo without power", || {
             robot.number("servos/S1/power") == 0.0
         });
@@ -114,8 +111,7 @@ fn while_the_keeper_is_stopped_motors_rest_and_it_is_told_to_go_on() {
         assert!(why.ends_with(&format!("({keeper}) was stopped")), "{why}");
     }
     assert_eq!(view_processes(&robot), both);
-    let told = "was stopped: motors were brought to rest, and it was told to go on";
-    eventually("a complaint", || robot.complaints().contains(told));
+    robot.complains("was stopped: motors were brought to rest, and it was told to go on");
     // It keeps the mount as before.
     processes::signal(server, Signal::SIGKILL);
     eventually("the view again", || {

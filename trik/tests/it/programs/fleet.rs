@@ -218,6 +218,7 @@ fn a_robot_that_is_killed_during_a_send_is_a_failure_of_its_own() {
     let (guardian, serving) = other.trikd();
     for pid in [guardian, serving] {
         processes::signal(pid, Signal::SIGSTOP);
+        eventually("a standstill", || processes::is_stopped(pid));
     }
     let words = [
         "send", "big.bin", "main.js", "--class", &class, "--run", "main.js",

@@ -102,16 +102,18 @@ impl Session {
         let Some(tag) = tag else {
             return self.client.not_done(None, news::NO_TAG);
         };
-        if text.trim() == LEAVE {
-            self.leave_debugger().await;
-            return self.client.done(tag);
-        }
-        self.control.clients.debugs(&self.client);
         let asked = OrderId {
             client: self.client.id(),
             tag,
             locale: self.heard,
         };
+        if text.trim() == LEAVE {
+            self.leave_debugger().await;
+            // Behind a stop that was asked for before, so that motors rest when this is answered.
+            let left = Command::Debug(asked, Wish::Left);
+            return self.control.programs.send(left).await;
+        }
+        self.control.clients.debugs(&self.client);
         let done = match (text.strip_prefix(RUN), text.strip_prefix(PYTHON)) {
             (Some(name), _) => self.run_debugged(asked, name).await,
             (None, Some(words)) => self.run_python(asked, words).await,

@@ -34,7 +34,7 @@ fn dies_of(child: &mut Child, of: Signal) {
     let status = child.wait().unwrap();
     assert_eq!(status.signal(), Some(of as i32));
     assert!(
-        begun.elapsed() < Duration::from_secs(5),
+        begun.elapsed() < Duration::from_secs(60),
         "took {:?}",
         begun.elapsed()
     );

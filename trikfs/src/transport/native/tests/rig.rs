@@ -22,7 +22,7 @@ use tempfile::TempDir;
 pub(crate) type Serve = fn(OwnedFd, Arc<dyn Operations>) -> io::Result<()>;
 
 /// Longest wait for anything in these tests.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Waits until something has come true.
 pub(crate) fn eventually(what: &str, condition: impl Fn() -> bool) {
