@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # Tries the build for the controller on this PC, with the controller's processor emulated.
 #
-# usage: cross/test.sh [build|unit|mount|serve] [NAME...]
+# usage: cross/test.sh [build|unit|mount|serve|physics] [NAME...]
 #
 #   build   only compiles what the others run
 #   unit    tests of the crates whose code depends on the processor, built for the controller
 #   mount   the programs of cross/build.sh on real mounts: the integration tests of this PC start them through
 #           binfmt_misc and speak to them over the PC's /dev/fuse; C converters are compiled for the controller
 #   serve   trikd above a mounted tree: a client runs a program in JavaScript, which moves something, and stops it
+#   physics the simulator of a PC, whose numbers are the same to the bit; only if it is named
 #
-# Without arguments all. Further names choose tests, as with cargo test. TRIK_IT_TESTS names the integration tests if they
+# Without arguments all but that. Further names choose tests, as with cargo test. TRIK_IT_TESTS names the integration tests if they
 # are built already. It may register qemu for ARM programs, as root, and says so.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
@@ -18,7 +19,7 @@ help_if_asked "$@"
 main() {
     local what=${1:-all}
     case $what in
-    build | unit | mount | serve) shift ;;
+    build | unit | mount | serve | physics) shift ;;
     all) ;;
     *)
         printf 'test.sh: there are no tests %s; see --help\n' "$what" >&2
@@ -37,6 +38,7 @@ main() {
     case $what in all | unit) unit "$@" ;; esac
     case $what in all | serve) serve ;; esac
     case $what in all | mount) mount_tests "$@" ;; esac
+    case $what in physics) physics "$@" ;; esac
 }
 
 # Those of trikd are not among them: what it links takes longer to build than all the rest, and `serve` runs the daemon
@@ -47,6 +49,14 @@ unit_tests() {
 
 data_flow_tests() {
     CARGO_PROFILE_DEV_OPT_LEVEL=1 cross_cargo test --lib -p lang-dataflow "$@"
+}
+
+# Realistic physics, whose numbers are the same as on a PC. Not a part of the gate: no controller runs it.
+physics() {
+    say "realistic physics gives the same bits"
+    local chosen=("$@")
+    [ "$#" -gt 0 ] || chosen=(a_run_has_the_same_bits_on_every_machine)
+    CARGO_PROFILE_DEV_OPT_LEVEL=1 cross_cargo test --lib -p sim --no-default-features -- "${chosen[@]}"
 }
 
 # Interpreted instructions take some ten times as long, so the random trials are fewer.
