@@ -45,20 +45,22 @@ fn events_of_32_bit_machines_become_tuples() {
 #[test]
 fn a_reader_that_comes_later_begins_with_the_present_values_and_not_with_old_events() {
     let board = Board::new();
-    board.fifo("events");
+    // One for each: a close is told a moment later, and until then events would go to either node.
+    board.fifo("pad");
+    board.fifo("all");
     let Some(m) = mount_on(
         board,
-        "local function pad(events)
-  return { src = evdev{ path = '$DIR/events', axes = not events and { 'ABS_X' } or nil, events = events, layout = 'bits64' } }
+        "local function pad(name, events)
+  return { src = evdev{ path = '$DIR/' .. name, axes = not events and { 'ABS_X' } or nil, events = events, layout = 'bits64' } }
 end
-trikfs = { pad = pad(), all = pad(true) }",
+trikfs = { pad = pad('pad'), all = pad('all', true) }",
     ) else {
         return;
     };
     m.python(
         "def event(kind, code, value): return bytes(16) + struct.pack('=HHi', kind, code, value)
 for node, first in (('pad', struct.pack('<i', 7)), ('all', None)):
-    early, pipe = open_ro(M + '/' + node + '/device', os.O_NONBLOCK), feed('events')
+    early, pipe = open_ro(M + '/' + node + '/device', os.O_NONBLOCK), feed(node)
     os.write(pipe, event(3, 0, -5) + event(0, 0, 0) + event(3, 0, 7) + event(0, 0, 0))
     eventually(lambda: ready(early), 'events')
     size = 0

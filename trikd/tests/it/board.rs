@@ -5,22 +5,43 @@
 use crate::rig::{BUILT, Client, Robot, trikd};
 use harness::wait::note_skip;
 use harness::{Board, eventually, processes};
+use nix::libc;
 use nix::sys::signal::Signal;
-use std::io::{BufRead, BufReader};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 /// A running `trik up`.
 struct Up {
     process: Child,
+    tree: PathBuf,
     devices: PathBuf,
 }
 
 impl Drop for Up {
     fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("log of the tree:\n{}", log_of(&self.tree));
+        }
         processes::signal(self.process.id(), Signal::SIGTERM);
         let _ = self.process.wait();
     }
+}
+
+/// What a tree has told so far.
+fn log_of(tree: &Path) -> String {
+    let mut bytes = Vec::new();
+    let log = File::options()
+        .read(true)
+        .custom_flags(libc::O_NONBLOCK)
+        .open(tree.join("log"));
+    if let Ok(mut log) = log {
+        // It ends with EAGAIN, and what came before is there.
+        let _ = log.read_to_end(&mut bytes);
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// A robot on a virtual board; the board goes after it.
@@ -84,6 +105,7 @@ fn virtual_robot_with(up_words: &[&str], words: &[&str]) -> Option<Virtual> {
     });
     let up = Up {
         process,
+        tree: tree.clone(),
         devices: devices.expect("a board"),
     };
     Some(Virtual {
@@ -365,7 +387,7 @@ fn pictures(client: &mut Client, count: usize) -> Vec<Vec<u8>> {
             length = number.parse().expect("a number");
         } else if line == "\r\n" && length > 0 {
             let mut file = vec![0; length];
-            std::io::Read::read_exact(&mut reader, &mut file).expect("a picture");
+            reader.read_exact(&mut file).expect("a picture");
             found.push(file);
             length = 0;
         }

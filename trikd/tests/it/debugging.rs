@@ -172,6 +172,7 @@ diagram \"Counter\"
 fn a_data_flow_program_stops_at_changes_and_its_lines_reach_all_who_debug() {
     let robot = robot(&[]);
     let (mut client, mut other) = (robot.client("control"), robot.client("control"));
+    other.keep_alive();
     client.send(&format!("file:count.flow:{FLOW}"));
     client.send("debug:1 run count.flow");
     client.until("info: count.flow has started");
@@ -208,6 +209,10 @@ fn one_client_is_in_control_and_the_others_see_who_and_what() {
     let (robot, mut one, save) = counts(COUNTING);
     let mut two = robot.client("control");
     let mut quiet = robot.client("control");
+    // Each may be silent while others are asked.
+    for client in [&one, &two, &quiet] {
+        client.keep_alive();
+    }
     let seen = ask(&mut two, 1, "look");
     assert!(
         seen.contains("\"state\":\"running\"") && seen.contains(&save.ids[WAIT]),
@@ -259,6 +264,7 @@ fn one_client_is_in_control_and_the_others_see_who_and_what() {
 fn a_program_whose_controller_is_lost_stays_stopped_or_runs_on_without_its_breakpoints() {
     let (robot, mut one, save) = counts(COUNTING);
     let mut two = robot.client("control");
+    two.keep_alive();
     expect(&mut two, 1, "look", "true");
     expect(&mut one, 1, "attach", "true");
     expect(&mut one, 2, "pause", "true");

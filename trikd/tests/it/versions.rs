@@ -33,9 +33,10 @@ fn counting_beside_many() -> Vec<u8> {
 
 #[test]
 fn a_large_version_is_prepared_beside_the_program() {
+    // Before there is a client, which may not be silent for so long.
+    let many = counting_beside_many();
     let robot = robot(&[]);
     let mut client = robot.client("control");
-    let many = counting_beside_many();
     count(&mut client);
     upload(&mut client, "count.qrs", &many);
     // What it has printed so far does not count.
@@ -154,9 +155,6 @@ fn what_is_strange_about_a_version_is_told_once() {
 
 #[test]
 fn a_version_that_would_take_all_memory_is_refused_and_the_program_goes_on() {
-    let robot = robot(&[]);
-    let mut client = robot.client("control");
-    count(&mut client);
     let mut sketch = Sketch::new();
     let long = "m = m + 1\n".repeat(6000);
     let blocks: Vec<_> = (0..25)
@@ -165,6 +163,9 @@ fn a_version_that_would_take_all_memory_is_refused_and_the_program_goes_on() {
     sketch.chain(&blocks);
     let save = sketch.qrs().expect("a save");
     assert!(save.len() < 200_000, "it is packed well");
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    count(&mut client);
     upload(&mut client, "count.qrs", &save);
     client.send("patch:end:count.qrs");
     let told = client.until("error: count.qrs is not changed: ");
