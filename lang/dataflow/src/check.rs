@@ -17,6 +17,7 @@ mod rates;
 pub(crate) mod shape;
 mod silent;
 mod statements;
+mod through;
 mod tokens;
 mod types;
 mod unassigned;
