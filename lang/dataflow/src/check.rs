@@ -6,6 +6,7 @@
 mod arrivals;
 mod components;
 mod conditions;
+mod constants;
 mod edges;
 mod fed;
 mod first;

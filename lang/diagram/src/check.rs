@@ -173,7 +173,10 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
                 continue;
             }
             let mut found = match lang_expr::analyse(source, &mut names) {
-                Ok(()) => source.warnings(),
+                Ok(()) => match source.out_of_range() {
+                    Some(problem) => vec![problem],
+                    None => source.warnings(),
+                },
                 Err(found) => found,
             };
             if found.is_empty() {

@@ -19,10 +19,10 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         }
         Reason::TextTooLong
         | Reason::UnknownSymbols(_)
-        | Reason::UnexpectedToken
+        | Reason::UnexpectedToken(..)
         | Reason::UnexpectedEnd
         | Reason::Expected(..)
-        | Reason::ExpectedAtEnd(..)
+        | Reason::ExpectedAtEnd(_)
         | Reason::NotSupportedYet
         | Reason::TooDeep
         | Reason::CountsDiffer
@@ -41,6 +41,7 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         | Reason::TooFewArguments(_)
         | Reason::NotAnalysed
         | Reason::OddNumber(..)
+        | Reason::OutOfRange(_)
         | Reason::DivisionByZero
         | Reason::RandomOfNothing
         | Reason::Uninitialized(_)

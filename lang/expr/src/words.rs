@@ -4,6 +4,7 @@
 
 use crate::limits;
 use crate::names::written;
+use crate::value::float_text;
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -19,6 +20,17 @@ pub enum Stage {
     Runtime,
 }
 
+/// What a token that cannot stand in its place may be meant for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Meant {
+    /// Nobody knows.
+    Unknown,
+    /// This sign, of which it is a part.
+    Sign(&'static str),
+    /// What blocks do, and words of the language elsewhere.
+    Block,
+}
+
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
@@ -26,14 +38,14 @@ pub enum Reason {
     TextTooLong,
     /// Characters that begin nothing.
     UnknownSymbols(String),
-    /// A token that cannot stand here.
-    UnexpectedToken,
+    /// A token that cannot stand here, as it is written.
+    UnexpectedToken(String, Meant),
     /// The text ends too early.
     UnexpectedEnd,
     /// One token was wanted, another one is there.
     Expected(&'static str, &'static str),
-    /// One token was wanted and nothing is there; the last one is named, as the real program does.
-    ExpectedAtEnd(&'static str, &'static str),
+    /// One token was wanted and nothing is there. The real program names the last one that is.
+    ExpectedAtEnd(&'static str),
     /// `...`
     NotSupportedYet,
     /// Nesting beyond `limits::EXPRESSION_DEPTH_MAX`.
@@ -74,6 +86,8 @@ pub enum Reason {
     NotAnalysed,
     /// A whole number that does not fit in 32 bits, or not in its base; it counts as this value.
     OddNumber(String, f64),
+    /// A number that a block wants whole, and that does not fit in 32 bits.
+    OutOfRange(f64),
     /// `/`, `//` and `%`.
     DivisionByZero,
     /// `random(0)`.
@@ -136,10 +150,10 @@ impl Reason {
     pub fn stage(&self) -> Stage {
         match self {
             Self::TextTooLong | Self::UnknownSymbols(_) => Stage::Lexical,
-            Self::UnexpectedToken
+            Self::UnexpectedToken(..)
             | Self::UnexpectedEnd
             | Self::Expected(..)
-            | Self::ExpectedAtEnd(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::TooDeep
             | Self::CountsDiffer
@@ -159,7 +173,8 @@ impl Reason {
             | Self::TooManyArguments(_)
             | Self::TooFewArguments(_)
             | Self::NotAnalysed
-            | Self::OddNumber(..) => Stage::Semantic,
+            | Self::OddNumber(..)
+            | Self::OutOfRange(_) => Stage::Semantic,
             Self::DivisionByZero
             | Self::RandomOfNothing
             | Self::Uninitialized(_)
@@ -189,10 +204,11 @@ impl Reason {
         match self {
             Self::TextTooLong => "The text is too long".into(),
             Self::UnknownSymbols(text) => format!("Unknown sequence of symbols: {}", short(text)),
-            Self::UnexpectedToken => "Unexpected token".into(),
+            Self::UnexpectedToken(text, _) => format!("Unexpected token {}", quoted(text)),
             Self::UnexpectedEnd => "Unexpected end of input".into(),
-            Self::Expected(wanted, got) | Self::ExpectedAtEnd(wanted, got) => {
-                format!("Expected \"{wanted}\", got \"{got}\"")
+            Self::Expected(wanted, got) => format!("Expected \"{wanted}\", got \"{got}\""),
+            Self::ExpectedAtEnd(wanted) => {
+                format!("Expected \"{wanted}\", got the end of the text")
             }
             Self::NotSupportedYet => "This construction is not supported yet".into(),
             Self::TooDeep => "The expression is nested too deeply".into(),
@@ -223,6 +239,12 @@ impl Reason {
             Self::TooFewArguments(count) => format!("Not enough parameters, {count} expected"),
             Self::NotAnalysed => "This construction is not supported by semantic analysis".into(),
             Self::OddNumber(text, value) => format!("The number {} counts as {value}", short(text)),
+            Self::OutOfRange(number) => {
+                format!(
+                    "{} is beyond the whole numbers that a block takes",
+                    float_text(*number)
+                )
+            }
             Self::DivisionByZero => "Division by zero".into(),
             Self::RandomOfNothing => "random(0) has no numbers to choose from".into(),
             Self::Uninitialized(name) => {
@@ -264,8 +286,12 @@ impl Reason {
                 ". Is the closing quote missing?".into()
             }
             Self::UnknownSymbols(text) if text.starts_with('!') => ". Write 'not' instead of '!'.".into(),
+            Self::UnexpectedToken(_, Meant::Sign(sign)) => format!(". Did you mean '{sign}'?"),
+            Self::UnexpectedToken(_, Meant::Block) => {
+                ". This word is reserved and stands in no expression: take a block for it, or another name."
+                    .into()
+            }
             Self::UnexpectedEnd => ". Something is missing after this.".into(),
-            Self::ExpectedAtEnd(wanted, _) => format!(". The text ends without \"{wanted}\"."),
             Self::TooDeep => {
                 format!(": at most {} levels; use variables for parts of it.", limits::EXPRESSION_DEPTH_MAX)
             }
@@ -277,6 +303,7 @@ impl Reason {
                 .into(),
             Self::ReadOnly(_) => ": it belongs to the robot. Choose another name.".into(),
             Self::OddNumber(..) => ". Numbers go up to 2147483647, and a 0 in front means base 8.".into(),
+            Self::OutOfRange(_) => format!(": {} to {}.", i32::MIN, i32::MAX),
             Self::RandomOfNothing => ". Give it at least 1.".into(),
             Self::ValueTooLong => format!(
                 ": a table has at most {} elements, a text at most {} bytes.",
@@ -287,8 +314,9 @@ impl Reason {
             Self::StoreFull => ". Does a table or text grow without end?".into(),
             Self::TooMuchWork => ". Are very long tables compared or copied?".into(),
             Self::UnknownSymbols(_)
-            | Self::UnexpectedToken
+            | Self::UnexpectedToken(_, Meant::Unknown)
             | Self::Expected(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::CountsDiffer
             | Self::AssignToCall
@@ -325,12 +353,14 @@ impl Reason {
                 limits::EXPRESSION_TEXT_MAX
             ),
             Self::UnknownSymbols(text) => unknown_in_russian(text),
-            Self::UnexpectedToken => "Неожиданная лексема".into(),
+            Self::UnexpectedToken(text, meant) => {
+                format!("Неожиданная лексема {}{}", quoted(text), meant_in_russian(*meant))
+            }
             Self::UnexpectedEnd => "Текст неожиданно кончился: после этого места чего-то не хватает".into(),
             Self::Expected(wanted, got) => {
                 format!("Здесь нужно «{}», а стоит «{}»", token(wanted), token(got))
             }
-            Self::ExpectedAtEnd(wanted, _) => {
+            Self::ExpectedAtEnd(wanted) => {
                 format!("Текст кончился, а не хватает «{}»", token(wanted))
             }
             Self::NotSupportedYet | Self::NotAnalysed | Self::NotInterpreted => {
@@ -372,6 +402,12 @@ impl Reason {
                 "Число {} будет прочитано как {value}. Наибольшее число 2147483647, а 0 впереди \
                  означает восьмеричную запись.",
                 short(text)
+            ),
+            Self::OutOfRange(number) => format!(
+                "{} не входит в целые числа, которые берёт блок: от {} до {}.",
+                float_text(*number),
+                i32::MIN,
+                i32::MAX
             ),
             Self::DivisionByZero
             | Self::RandomOfNothing
@@ -426,10 +462,10 @@ impl Reason {
             // `russian` has the words of these.
             Self::TextTooLong
             | Self::UnknownSymbols(_)
-            | Self::UnexpectedToken
+            | Self::UnexpectedToken(..)
             | Self::UnexpectedEnd
             | Self::Expected(..)
-            | Self::ExpectedAtEnd(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::TooDeep
             | Self::CountsDiffer
@@ -450,6 +486,7 @@ impl Reason {
             | Self::TooFewArguments(_)
             | Self::NotAnalysed
             | Self::OddNumber(..)
+            | Self::OutOfRange(_)
             | Self::NotInterpreted => String::new(),
         }
     }
@@ -489,6 +526,25 @@ fn short(text: &str) -> String {
         shown.push_str("...");
     }
     shown
+}
+
+/// A token in quotes, if it has none of its own.
+fn quoted(text: &str) -> String {
+    match text.starts_with(['"', '\'']) {
+        true => short(text),
+        false => format!("\"{}\"", short(text)),
+    }
+}
+
+fn meant_in_russian(meant: Meant) -> String {
+    match meant {
+        Meant::Unknown => String::new(),
+        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
+        Meant::Block => {
+            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
+                .into()
+        }
+    }
 }
 
 /// Symbols that begin nothing, with what they may be meant for.

@@ -2,6 +2,7 @@
 //!
 //! Owns what does not fit. Types are those of `types`.
 
+use super::constants;
 use super::found::{Found, port_place};
 use super::through::{Made, Through};
 use super::types::{Of, Types};
@@ -25,6 +26,7 @@ pub(super) fn look(program: &Program, types: &Types, found: &mut Found) {
             for made in through.made(Target { node: id, port }, of) {
                 look_at_edge(made, to, &mut texts, found);
                 look_at_word(made, to, &mut texts, found);
+                constants::look(program, made, to, found);
             }
         }
         look_at_inputs(program, id, found);
