@@ -2,9 +2,14 @@
 //!
 //! English sentences begin as the real program's do, so that its reports can be compared; what to do follows.
 
+mod hints;
+
 use crate::limits;
 use crate::names::written;
 use crate::value::float_text;
+use hints::meant_in_russian;
+pub use hints::{Clash, Meant};
+pub(super) use hints::{did_you_mean, gives_no_value, keeps_type};
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -18,17 +23,6 @@ pub enum Stage {
     Semantic,
     /// While it ran.
     Runtime,
-}
-
-/// What a token that cannot stand in its place may be meant for.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Meant {
-    /// Nobody knows.
-    Unknown,
-    /// This sign, of which it is a part.
-    Sign(&'static str),
-    /// What blocks do, and words of the language elsewhere.
-    Block,
 }
 
 /// What is wrong.
@@ -61,7 +55,7 @@ pub enum Reason {
     /// Assigning something that is neither a name nor an element.
     AssignToValue,
     /// Both sides of `=` do not fit.
-    Mismatched,
+    Mismatched(Option<Clash>),
     /// In the mode of static languages: a value is made to fit its variable of this type.
     ImplicitCast(String),
     /// An operand or argument of the wrong type.
@@ -161,7 +155,7 @@ impl Reason {
             Self::TooManyNames
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -222,7 +216,7 @@ impl Reason {
             Self::AssignToValue => {
                 "Incorrect assignment, only variables and tables can be assigned to.".into()
             }
-            Self::Mismatched => "Left and right operand have mismatched types.".into(),
+            Self::Mismatched(_) => "Left and right operand have mismatched types.".into(),
             Self::ImplicitCast(kind) => format!(
                 "An attempt will be made to implicitly cast the right operand to the type '{kind}'"
             ),
@@ -322,7 +316,7 @@ impl Reason {
             | Self::AssignToCall
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -377,7 +371,7 @@ impl Reason {
             }
             Self::FunctionAsName => "Имя встроенной функции использовано как переменная".into(),
             Self::AssignToValue => "Присваивать можно только переменной или элементу таблицы.".into(),
-            Self::Mismatched => "Левый и правый операнд имеют несовпадающие типы.".into(),
+            Self::Mismatched(_) => "Левый и правый операнд имеют несовпадающие типы.".into(),
             Self::ImplicitCast(kind) => format!("Значение справа будет приведено к типу «{}»", kinds_in_russian(kind)),
             Self::TypeMismatch => "Несоответствие типов".into(),
             Self::NoType => "Неподходящий тип".into(),
@@ -473,7 +467,7 @@ impl Reason {
             | Self::TooManyNames
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -492,32 +486,6 @@ impl Reason {
     }
 }
 
-/// The name that was meant.
-pub(super) fn did_you_mean(known: &str) -> Words {
-    let known = short(written(known));
-    Words::new(
-        format!("Did you mean '{known}'?"),
-        format!("Может быть, '{known}'?"),
-    )
-}
-
-/// A name that no text has taught a type, and the one that was meant.
-pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
-    let name = short(written(name));
-    let meant = meant.map_or_else(|| Words::new("", ""), did_you_mean);
-    let space = if meant.english.is_empty() { "" } else { " " };
-    Words::new(
-        format!(
-            "Nothing has given '{name}' a value.{space}{}",
-            meant.english
-        ),
-        format!(
-            "Переменной '{name}' нигде не присвоено значение.{space}{}",
-            meant.russian
-        ),
-    )
-}
-
 /// The beginning of a text that may be very long.
 fn short(text: &str) -> String {
     const SHOWN: usize = 80;
@@ -533,17 +501,6 @@ fn quoted(text: &str) -> String {
     match text.starts_with(['"', '\'']) {
         true => short(text),
         false => format!("\"{}\"", short(text)),
-    }
-}
-
-fn meant_in_russian(meant: Meant) -> String {
-    match meant {
-        Meant::Unknown => String::new(),
-        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
-        Meant::Block => {
-            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
-                .into()
-        }
     }
 }
 

@@ -75,21 +75,6 @@ pub(crate) fn list_short(found: usize, wanted: usize) -> Words {
     )
 }
 
-pub(crate) fn wrong_type(name: &str, value: &Value, wanted: &str) -> Words {
-    Words::new(
-        format!(
-            "the variable {} is of type {wanted}, and {} is not",
-            short(name),
-            what(value)
-        ),
-        format!(
-            "переменная {} имеет тип {wanted}, а {} нет",
-            short(name),
-            what(value)
-        ),
-    )
-}
-
 pub(crate) fn too_many_variables() -> Words {
     Words::new(
         "the program has too many variables, or its values are too large together",

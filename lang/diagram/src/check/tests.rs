@@ -128,3 +128,19 @@ fn a_number_that_no_block_takes_is_told_in_its_place() {
         ]
     );
 }
+
+#[test]
+fn a_variable_of_two_types_is_told_with_both() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let number = code(&mut sketch, "speed = 5");
+    let text = code(&mut sketch, "speed = 'fast'");
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, number, text, end]);
+    let told = lines(&sketch, Locale::English);
+    let wanted = "'speed' is of the type 'integer', and this gives it 'string'";
+    assert!(told.iter().any(|line| line.contains(wanted)), "{told:#?}");
+    let told = lines(&sketch, Locale::Russian);
+    let wanted = "'speed' \u{438}\u{43c}\u{435}\u{435}\u{442} \u{442}\u{438}\u{43f} \u{ab}\u{446}\u{435}\u{43b}\u{44b}\u{439}\u{bb}, \u{430} \u{43f}\u{43e}\u{43b}\u{443}\u{447}\u{430}\u{435}\u{442} \u{ab}\u{442}\u{435}\u{43a}\u{441}\u{442}\u{bb}";
+    assert!(told.iter().any(|line| line.contains(wanted)), "{told:#?}");
+}
