@@ -6,6 +6,7 @@
 mod arrivals;
 mod components;
 mod conditions;
+mod constants;
 mod edges;
 mod fed;
 mod first;
@@ -17,6 +18,7 @@ mod rates;
 pub(crate) mod shape;
 mod silent;
 mod statements;
+mod through;
 mod tokens;
 mod types;
 mod unassigned;

@@ -48,6 +48,8 @@ pub const NAMED_MAX: usize = 8;
 pub const LISTED_MAX: usize = 20;
 /// Characters of a text that a message repeats.
 pub const REPEATED_MAX: usize = 60;
+/// Kinds of tokens that are told apart at one port of a subprogram; each text is one of its own.
+pub const KINDS_MAX: usize = 16;
 /// How often types and periods are handed on along edges; at the end of a chain that is longer in the wrong order they stay
 /// unknown.
 pub const PASSES_MAX: usize = 12;

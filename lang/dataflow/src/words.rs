@@ -4,6 +4,7 @@
 
 use crate::blocks::{Direction, Row};
 use crate::limits::{self, LISTED_MAX, QUEUE_MAX, REPEATED_MAX};
+use lang_expr::Value;
 use lang_text::near;
 use lang_text::problem::{Locale, Words};
 
@@ -440,6 +441,28 @@ pub(crate) fn no_number(text: &str) -> Words {
             short(text)
         ),
         format!("'{}' не число, а это свойство не вычисляется", short(text)),
+    )
+}
+
+/// What a value is, as a person reads it.
+pub(crate) fn what(value: &Value) -> String {
+    short(&value.brief())
+}
+
+pub(crate) fn too_large_number(value: &Value) -> Words {
+    Words::new(
+        format!(
+            "{} is too large: whole numbers are from -{} to {}",
+            what(value),
+            i32::MAX,
+            i32::MAX
+        ),
+        format!(
+            "{} слишком велико: целые числа - от -{} до {}",
+            what(value),
+            i32::MAX,
+            i32::MAX
+        ),
     )
 }
 

@@ -122,17 +122,23 @@ pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Nod
     }
 }
 
-/// Teaches names all that is known before a run; the texts, and names whose values nobody knows beforehand.
-fn taught(
-    program: &Program,
-    flow: &Flow,
-    names: &mut Names,
-) -> (HashMap<u32, Source>, HashSet<String>) {
+/// What names were taught before a run.
+struct Taught {
+    texts: HashMap<u32, Source>,
+    /// Names whose values nobody knows beforehand.
+    unknown: HashSet<String>,
+    /// What was wrong with texts at the first look, with advice: a variable whose type did not fit has none afterwards.
+    advised: HashMap<u32, Vec<Problem>>,
+}
+
+/// Teaches names all that is known before a run.
+fn taught(program: &Program, flow: &Flow, names: &mut Names) -> Taught {
     let mut unknown = HashSet::new();
     for &node in &flow.order {
         declare(program, node, names, &mut unknown);
     }
     let mut texts: HashMap<u32, Source> = HashMap::new();
+    let mut advised = HashMap::new();
     // The first time teaches all names; what is still wrong the second time is wrong.
     for _ in 0..2 {
         for &node in &flow.order {
@@ -143,18 +149,33 @@ fn taught(
                 let source = texts
                     .entry(index)
                     .or_insert_with(|| Source::new(&text.text, text.wanted.wanted()));
-                let _ = lang_expr::analyse(source, names);
+                if let Err(problems) = lang_expr::analyse(source, names)
+                    && is_advised(&problems)
+                {
+                    advised.entry(index).or_insert(problems);
+                }
             }
         }
     }
-    let unknown = spread(unknown, &texts);
-    (texts, unknown)
+    Taught {
+        unknown: spread(unknown, &texts),
+        texts,
+        advised,
+    }
+}
+
+fn is_advised(problems: &[Problem]) -> bool {
+    problems.iter().any(|problem| problem.hint.is_some())
 }
 
 /// Errors of expressions that no order of running can mend.
 fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem> {
     let mut names = Names::new(program.kit, Compat::Studio);
-    let (mut texts, unknown) = taught(program, flow, &mut names);
+    let Taught {
+        mut texts,
+        unknown,
+        mut advised,
+    } = taught(program, flow, &mut names);
     let mut given = given(program, flow, &texts);
     let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
     given.extend(parameters.map(|parameter| Rc::from(&*parameter.name)));
@@ -173,8 +194,12 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
                 continue;
             }
             let mut found = match lang_expr::analyse(source, &mut names) {
-                Ok(()) => source.warnings(),
-                Err(found) => found,
+                Ok(()) => match source.out_of_range() {
+                    Some(problem) => vec![problem],
+                    None => source.warnings(),
+                },
+                Err(found) if is_advised(&found) => found,
+                Err(found) => advised.remove(&index).unwrap_or(found),
             };
             if found.is_empty() {
                 found = without_value(source.tree(), &names, &given);

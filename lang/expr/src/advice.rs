@@ -5,7 +5,7 @@
 use super::names::{Kind, Names};
 use super::tree::{Node, Tree};
 use super::types::Type;
-use super::words::{Fault, Reason, did_you_mean, gives_no_value};
+use super::words::{Fault, Reason, did_you_mean, gives_no_value, keeps_type};
 use lang_text::near::nearest;
 use lang_text::problem::Problem;
 
@@ -17,12 +17,13 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         Reason::CannotDeduce(_) => {
             unknown_at(fault, tree, names).map(|name| gives_no_value(name, meant(name, names)))
         }
+        Reason::Mismatched(Some(clash)) => Some(keeps_type(clash)),
         Reason::TextTooLong
         | Reason::UnknownSymbols(_)
-        | Reason::UnexpectedToken
+        | Reason::UnexpectedToken(..)
         | Reason::UnexpectedEnd
         | Reason::Expected(..)
-        | Reason::ExpectedAtEnd(..)
+        | Reason::ExpectedAtEnd(_)
         | Reason::NotSupportedYet
         | Reason::TooDeep
         | Reason::CountsDiffer
@@ -30,7 +31,7 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         | Reason::TooManyNames
         | Reason::FunctionAsName
         | Reason::AssignToValue
-        | Reason::Mismatched
+        | Reason::Mismatched(None)
         | Reason::ImplicitCast(_)
         | Reason::TypeMismatch
         | Reason::NoType
@@ -41,6 +42,7 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         | Reason::TooFewArguments(_)
         | Reason::NotAnalysed
         | Reason::OddNumber(..)
+        | Reason::OutOfRange(_)
         | Reason::DivisionByZero
         | Reason::RandomOfNothing
         | Reason::Uninitialized(_)
@@ -104,6 +106,29 @@ mod tests {
         assert!(all.ends_with("Nothing has given 'zzz' a value."), "{all}");
         let all = said(&mut names, "x = sped").join("\n");
         assert!(all.ends_with("Did you mean 'speed'?"), "{all}");
+    }
+
+    #[test]
+    fn a_value_of_another_type_is_said_with_both_types() {
+        let mut names = Names::new(Kit::V62, Compat::Studio);
+        assert!(said(&mut names, "n = 5; a = {1, 2}").is_empty());
+        for (text, wanted) in [
+            (
+                "n = 'one'",
+                "'n' is of the type 'integer', and this gives it 'string': a variable keeps its type",
+            ),
+            (
+                "a[0] = 'one'",
+                "An element of 'a' is of the type 'integer', and this gives it 'string'",
+            ),
+            (
+                "a = 1",
+                "'a' is of the type 'table[integer]', and this gives it 'integer'",
+            ),
+        ] {
+            let all = said(&mut names.clone(), text).join("\n");
+            assert!(all.contains(wanted), "{text}: {all}");
+        }
     }
 
     #[test]

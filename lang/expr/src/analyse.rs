@@ -10,7 +10,7 @@ use super::reserved::{FUNCTIONS, Function};
 use super::tree::{Binary, Id, Node, Tree, Unary};
 use super::types::{Element, Possible, Type, Variable};
 use super::value::Compat;
-use super::words::{Fault, Reason};
+use super::words::{Clash, Fault, Reason};
 use crate::limits;
 use lang_text::problem::Position;
 
@@ -402,7 +402,8 @@ impl<'a> Analysis<'a> {
         let widens = self.names.widens;
         let assigned = self.names.types.assigned(had, given, widens);
         if assigned.target.is_empty() {
-            self.fault_on(Reason::Mismatched, id);
+            let clash = self.clash(target, had, given);
+            self.fault_on(Reason::Mismatched(clash), id);
             if !self.is_fixed() {
                 self.set(target, assigned.target);
             }
@@ -430,6 +431,24 @@ impl<'a> Analysis<'a> {
             self.set(*table, widened.target);
         }
         self.again = true;
+    }
+
+    /// What does not fit in an assignment, if both sides have a type.
+    fn clash(&self, target: Id, had: Possible, given: Possible) -> Option<Clash> {
+        let mut at = target;
+        while let Node::Index { table, .. } = self.tree.node(at) {
+            at = *table;
+        }
+        let Node::Name(name) = self.tree.node(at) else {
+            return None;
+        };
+        let is_known = !had.is_empty() && !given.is_empty();
+        is_known.then(|| Clash {
+            name: name.to_string(),
+            is_element: at != target,
+            had: self.names.types.names(had),
+            given: self.names.types.names(given),
+        })
     }
 
     /// Names that are seen here for the first time have no value that could be read.

@@ -10,6 +10,7 @@
 
 mod advice;
 mod analyse;
+mod bounded;
 mod call;
 mod code;
 mod elements;
@@ -30,6 +31,7 @@ pub mod value;
 pub mod words;
 
 pub use advice::explained;
+pub use bounded::constant;
 pub use escape::{escape, unescape};
 pub use names::{Kind, Names, Slot};
 pub use reserved::Kit;
@@ -201,6 +203,17 @@ impl Source {
         .collect()
     }
 
+    /// That a block wants a whole number and the text is one, whatever runs, that does not fit in 32 bits; it would count
+    /// as the end of the range.
+    pub fn out_of_range(&self) -> Option<Problem> {
+        let root = self.tree.root.filter(|_| self.wanted == Wanted::Int)?;
+        let number = constant(&self.tree, root)?;
+        let range = f64::from(i32::MIN)..=f64::from(i32::MAX);
+        let reason = Reason::OutOfRange(number);
+        (!range.contains(&number.round()))
+            .then(|| Fault::new(reason, self.tree.place(root)).problem())
+    }
+
     /// The settled type of a part after a good analysis, or [`Type::Any`].
     pub fn type_of(&self, part: Id, names: &Names) -> Type {
         let possible = match self.parts.get(part as usize) {
@@ -307,7 +320,7 @@ pub fn evaluate_to(
                 None => *into = run.value(root),
             },
             Wanted::Bool => *into = Value::Bool(run.truth(root)),
-            Wanted::Int => *into = Value::Int(run.whole(root)),
+            Wanted::Int => *into = Value::Int(run.bounded(root)),
             Wanted::Float => *into = Value::Float(run.number(root)),
             Wanted::Text => *into = run.value(root).into_text(),
             Wanted::List => {
@@ -329,14 +342,14 @@ pub fn evaluate_bool(
     run(source, names, store, outside, |run, root| run.truth(root))
 }
 
-/// Runs a text for a whole number; takes no memory for numbers.
+/// Runs a text for a whole number, which beyond 32 bits stays at the end of the range; takes no memory for numbers.
 pub fn evaluate_int(
     source: &Source,
     names: &Names,
     store: &mut Store,
     outside: &mut dyn Outside,
 ) -> Result<i32, Vec<Problem>> {
-    run(source, names, store, outside, |run, root| run.whole(root))
+    run(source, names, store, outside, |run, root| run.bounded(root))
 }
 
 #[inline]

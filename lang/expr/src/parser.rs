@@ -1,12 +1,13 @@
 //! Tokens to a tree: a Pratt parser of the language as TRIK Studio has it.
 //!
 //! Its messages come in the order in which the real program's combinators give them, and stand where those stand: at
-//! the token that does not fit, at the last one when the text ends too early. Depth is limited.
+//! the token that does not fit, at the last one when the text ends too early; only the first one at each place is told.
+//! Depth is limited.
 
 use super::escape;
 use super::lexer::{Placed, Token, tokens};
 use super::tree::{Binary, Field, Id, Node, Tree, UNARY_PRECEDENCE, Unary};
-use super::words::{Fault, Reason};
+use super::words::{Fault, Meant, Reason};
 use crate::limits;
 use lang_text::problem::Position;
 
@@ -28,8 +29,9 @@ pub fn parse(text: &str) -> (Tree, Vec<Fault>) {
         faults,
     };
     let root = parser.block();
-    if parser.position < parser.tokens.len() {
-        parser.fault(Reason::UnexpectedToken);
+    // After a fault the rest was not looked at.
+    if root.is_ok() && parser.position < parser.tokens.len() {
+        parser.unexpected();
     }
     if parser.faults.is_empty() {
         parser.tree.root = root.ok();
@@ -84,10 +86,37 @@ impl<'a> Parser<'a> {
     }
 
     fn fault_at(&mut self, reason: Reason, at: Position) -> Failed {
-        if self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
+        // What follows from a fault says nothing new where that stands, and nothing at all of a text that was given up.
+        let mut told = self.faults.iter();
+        let is_told = told.any(|fault| fault.at == at || fault.reason == Reason::TooDeep);
+        if !is_told && self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
             self.faults.push(Fault::new(reason, at));
         }
         Failed
+    }
+
+    /// Tells a token that cannot stand here, with what may be meant.
+    fn unexpected(&mut self) -> Failed {
+        let before = self.position.checked_sub(1);
+        let before = before.and_then(|at| self.tokens.get(at));
+        let meant = match (before.map(|placed| placed.token), self.peek()) {
+            (Some(Token::Word("=")), Some(Token::Word(">"))) => Meant::Sign(">="),
+            (Some(Token::Word("=")), Some(Token::Word("<"))) => Meant::Sign("<="),
+            (_, Some(Token::Word("="))) => Meant::Sign("=="),
+            (_, Some(Token::Word(word))) if word.starts_with(char::is_alphabetic) => Meant::Block,
+            (_, Some(Token::Name | Token::Int | Token::Float | Token::Text | Token::Word(_)))
+            | (_, None) => Meant::Unknown,
+        };
+        self.fault(Reason::UnexpectedToken(self.lexeme().to_owned(), meant))
+    }
+
+    /// Tells that another token is wanted here.
+    fn wants(&mut self, wanted: &'static str) -> Failed {
+        let reason = match self.peek() {
+            Some(token) => Reason::Expected(wanted, token.shown()),
+            None => Reason::ExpectedAtEnd(wanted),
+        };
+        self.fault(reason)
     }
 
     fn expect(&mut self, word: &'static str) -> Parsed<()> {
@@ -95,13 +124,7 @@ impl<'a> Parser<'a> {
             self.position += 1;
             return Ok(());
         }
-        let got = self.next().map_or("", |placed| placed.token.shown());
-        let reason = if self.is_end() {
-            Reason::ExpectedAtEnd(word, got)
-        } else {
-            Reason::Expected(word, got)
-        };
-        Err(self.fault(reason))
+        Err(self.wants(word))
     }
 
     fn add(&mut self, node: Node, at: Position) -> Parsed<Id> {
@@ -260,7 +283,7 @@ impl<'a> Parser<'a> {
             Token::Word("not") => return self.unary(Unary::Not),
             Token::Word("#") => return self.unary(Unary::Length),
             Token::Word("~") => return self.unary(Unary::BitNot),
-            Token::Word(_) => return Err(self.fault(Reason::UnexpectedToken)),
+            Token::Word(_) => return Err(self.unexpected()),
         };
         self.position += 1;
         self.add(simple, at)
@@ -332,8 +355,7 @@ impl<'a> Parser<'a> {
 
     fn name(&mut self) -> Parsed<Id> {
         if self.peek() != Some(Token::Name) {
-            let got = self.next().map_or("", |placed| placed.token.shown());
-            return Err(self.fault(Reason::Expected("identifier", got)));
+            return Err(self.wants("identifier"));
         }
         let at = self.here();
         let name = Node::Name(self.lexeme().into());
@@ -352,8 +374,7 @@ impl<'a> Parser<'a> {
         self.position += 1;
         let at = self.here();
         if self.peek() != Some(Token::Name) {
-            let got = self.next().map_or("", |placed| placed.token.shown());
-            return Err(self.fault(Reason::Expected("identifier", got)));
+            return Err(self.wants("identifier"));
         }
         let name = Node::Text(self.lexeme().into());
         self.position += 1;
@@ -383,7 +404,7 @@ impl<'a> Parser<'a> {
                 self.position += 1;
                 self.add(text, at).map(|id| vec![id])
             }
-            Some(_) => Err(self.fault(Reason::UnexpectedToken)),
+            Some(_) => Err(self.unexpected()),
             None => Err(self.fault(Reason::UnexpectedEnd)),
         }
     }

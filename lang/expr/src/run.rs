@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
     }
 
     /// Where names are strict, what is no number is an error and not 0.
-    fn look_at_number(&mut self, value: &Value, id: Id) {
+    pub(super) fn look_at_number(&mut self, value: &Value, id: Id) {
         let is_number = match value {
             Value::Int(_) | Value::Float(_) | Value::Bool(_) => true,
             Value::Nil | Value::Text(_) | Value::Unset | Value::List(_) => false,

@@ -464,11 +464,8 @@ fn texts_that_cannot_be_read_say_where() {
     check(
         Compat::Studio,
         &[
-            (&["1 + )"], "1:5 Unexpected token | 1:5 Unexpected token"),
-            (
-                &["(1"],
-                "1:2 Expected \")\", got \"integer literal\". The text ends without \")\".",
-            ),
+            (&["1 + )"], "1:5 Unexpected token \")\""),
+            (&["(1"], "1:2 Expected \")\", got the end of the text"),
             (
                 &["x = "],
                 "1:3 Unexpected end of input. Something is missing after this.",
@@ -489,11 +486,14 @@ fn texts_that_cannot_be_read_say_where() {
                 "2:7 Unknown sequence of symbols: @ | \
                  2:5 Unexpected end of input. Something is missing after this.",
             ),
-            (&["if x then"], "1:1 Unexpected token"),
+            (
+                &["if x then"],
+                "1:1 Unexpected token \"if\". This word is reserved and stands in no expression: take a block for it, or another name.",
+            ),
             (&["..."], "1:1 This construction is not supported yet"),
             (
                 &["x.5"],
-                "1:3 Expected \"identifier\", got \"integer literal\" | 1:3 Unexpected token",
+                "1:3 Expected \"identifier\", got \"integer literal\"",
             ),
         ],
     );

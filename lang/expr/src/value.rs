@@ -221,6 +221,27 @@ impl Value {
         }
     }
 
+    /// The same, where what is beyond 32 bits stays at the end of the range.
+    pub fn to_bounded_int(&self) -> i32 {
+        let wide = match self {
+            // What `round_wide` does not reach is beyond any range; not-a-number is 0.
+            Self::Float(number) if number.abs() >= f64::from(u32::MAX) => {
+                return *number as i32;
+            }
+            Self::Float(number) => round_wide(*number),
+            Self::Text(text) if text.len() <= limits::NUMBER_TEXT_MAX => {
+                text.trim().parse::<i64>().unwrap_or(0)
+            }
+            Self::Nil
+            | Self::Bool(_)
+            | Self::Int(_)
+            | Self::Text(_)
+            | Self::Unset
+            | Self::List(_) => i64::from(self.to_int()),
+        };
+        wide.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+    }
+
     /// As a truth, as a condition or `not` sees it: a float is rounded first; a text is false when it is empty, `0` or
     /// `false`.
     pub fn to_bool(&self) -> bool {

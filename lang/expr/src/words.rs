@@ -2,8 +2,14 @@
 //!
 //! English sentences begin as the real program's do, so that its reports can be compared; what to do follows.
 
+mod hints;
+
 use crate::limits;
 use crate::names::written;
+use crate::value::float_text;
+use hints::meant_in_russian;
+pub use hints::{Clash, Meant};
+pub(super) use hints::{did_you_mean, gives_no_value, keeps_type};
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -26,14 +32,14 @@ pub enum Reason {
     TextTooLong,
     /// Characters that begin nothing.
     UnknownSymbols(String),
-    /// A token that cannot stand here.
-    UnexpectedToken,
+    /// A token that cannot stand here, as it is written.
+    UnexpectedToken(String, Meant),
     /// The text ends too early.
     UnexpectedEnd,
     /// One token was wanted, another one is there.
     Expected(&'static str, &'static str),
-    /// One token was wanted and nothing is there; the last one is named, as the real program does.
-    ExpectedAtEnd(&'static str, &'static str),
+    /// One token was wanted and nothing is there. The real program names the last one that is.
+    ExpectedAtEnd(&'static str),
     /// `...`
     NotSupportedYet,
     /// Nesting beyond `limits::EXPRESSION_DEPTH_MAX`.
@@ -49,7 +55,7 @@ pub enum Reason {
     /// Assigning something that is neither a name nor an element.
     AssignToValue,
     /// Both sides of `=` do not fit.
-    Mismatched,
+    Mismatched(Option<Clash>),
     /// In the mode of static languages: a value is made to fit its variable of this type.
     ImplicitCast(String),
     /// An operand or argument of the wrong type.
@@ -74,6 +80,8 @@ pub enum Reason {
     NotAnalysed,
     /// A whole number that does not fit in 32 bits, or not in its base; it counts as this value.
     OddNumber(String, f64),
+    /// A number that a block wants whole, and that does not fit in 32 bits.
+    OutOfRange(f64),
     /// `/`, `//` and `%`.
     DivisionByZero,
     /// `random(0)`.
@@ -136,10 +144,10 @@ impl Reason {
     pub fn stage(&self) -> Stage {
         match self {
             Self::TextTooLong | Self::UnknownSymbols(_) => Stage::Lexical,
-            Self::UnexpectedToken
+            Self::UnexpectedToken(..)
             | Self::UnexpectedEnd
             | Self::Expected(..)
-            | Self::ExpectedAtEnd(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::TooDeep
             | Self::CountsDiffer
@@ -147,7 +155,7 @@ impl Reason {
             Self::TooManyNames
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -159,7 +167,8 @@ impl Reason {
             | Self::TooManyArguments(_)
             | Self::TooFewArguments(_)
             | Self::NotAnalysed
-            | Self::OddNumber(..) => Stage::Semantic,
+            | Self::OddNumber(..)
+            | Self::OutOfRange(_) => Stage::Semantic,
             Self::DivisionByZero
             | Self::RandomOfNothing
             | Self::Uninitialized(_)
@@ -189,10 +198,11 @@ impl Reason {
         match self {
             Self::TextTooLong => "The text is too long".into(),
             Self::UnknownSymbols(text) => format!("Unknown sequence of symbols: {}", short(text)),
-            Self::UnexpectedToken => "Unexpected token".into(),
+            Self::UnexpectedToken(text, _) => format!("Unexpected token {}", quoted(text)),
             Self::UnexpectedEnd => "Unexpected end of input".into(),
-            Self::Expected(wanted, got) | Self::ExpectedAtEnd(wanted, got) => {
-                format!("Expected \"{wanted}\", got \"{got}\"")
+            Self::Expected(wanted, got) => format!("Expected \"{wanted}\", got \"{got}\""),
+            Self::ExpectedAtEnd(wanted) => {
+                format!("Expected \"{wanted}\", got the end of the text")
             }
             Self::NotSupportedYet => "This construction is not supported yet".into(),
             Self::TooDeep => "The expression is nested too deeply".into(),
@@ -206,7 +216,7 @@ impl Reason {
             Self::AssignToValue => {
                 "Incorrect assignment, only variables and tables can be assigned to.".into()
             }
-            Self::Mismatched => "Left and right operand have mismatched types.".into(),
+            Self::Mismatched(_) => "Left and right operand have mismatched types.".into(),
             Self::ImplicitCast(kind) => format!(
                 "An attempt will be made to implicitly cast the right operand to the type '{kind}'"
             ),
@@ -223,6 +233,12 @@ impl Reason {
             Self::TooFewArguments(count) => format!("Not enough parameters, {count} expected"),
             Self::NotAnalysed => "This construction is not supported by semantic analysis".into(),
             Self::OddNumber(text, value) => format!("The number {} counts as {value}", short(text)),
+            Self::OutOfRange(number) => {
+                format!(
+                    "{} is beyond the whole numbers that a block takes",
+                    float_text(*number)
+                )
+            }
             Self::DivisionByZero => "Division by zero".into(),
             Self::RandomOfNothing => "random(0) has no numbers to choose from".into(),
             Self::Uninitialized(name) => {
@@ -264,8 +280,12 @@ impl Reason {
                 ". Is the closing quote missing?".into()
             }
             Self::UnknownSymbols(text) if text.starts_with('!') => ". Write 'not' instead of '!'.".into(),
+            Self::UnexpectedToken(_, Meant::Sign(sign)) => format!(". Did you mean '{sign}'?"),
+            Self::UnexpectedToken(_, Meant::Block) => {
+                ". This word is reserved and stands in no expression: take a block for it, or another name."
+                    .into()
+            }
             Self::UnexpectedEnd => ". Something is missing after this.".into(),
-            Self::ExpectedAtEnd(wanted, _) => format!(". The text ends without \"{wanted}\"."),
             Self::TooDeep => {
                 format!(": at most {} levels; use variables for parts of it.", limits::EXPRESSION_DEPTH_MAX)
             }
@@ -277,6 +297,7 @@ impl Reason {
                 .into(),
             Self::ReadOnly(_) => ": it belongs to the robot. Choose another name.".into(),
             Self::OddNumber(..) => ". Numbers go up to 2147483647, and a 0 in front means base 8.".into(),
+            Self::OutOfRange(_) => format!(": {} to {}.", i32::MIN, i32::MAX),
             Self::RandomOfNothing => ". Give it at least 1.".into(),
             Self::ValueTooLong => format!(
                 ": a table has at most {} elements, a text at most {} bytes.",
@@ -287,14 +308,15 @@ impl Reason {
             Self::StoreFull => ". Does a table or text grow without end?".into(),
             Self::TooMuchWork => ". Are very long tables compared or copied?".into(),
             Self::UnknownSymbols(_)
-            | Self::UnexpectedToken
+            | Self::UnexpectedToken(_, Meant::Unknown)
             | Self::Expected(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::CountsDiffer
             | Self::AssignToCall
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -325,12 +347,14 @@ impl Reason {
                 limits::EXPRESSION_TEXT_MAX
             ),
             Self::UnknownSymbols(text) => unknown_in_russian(text),
-            Self::UnexpectedToken => "Неожиданная лексема".into(),
+            Self::UnexpectedToken(text, meant) => {
+                format!("Неожиданная лексема {}{}", quoted(text), meant_in_russian(*meant))
+            }
             Self::UnexpectedEnd => "Текст неожиданно кончился: после этого места чего-то не хватает".into(),
             Self::Expected(wanted, got) => {
                 format!("Здесь нужно «{}», а стоит «{}»", token(wanted), token(got))
             }
-            Self::ExpectedAtEnd(wanted, _) => {
+            Self::ExpectedAtEnd(wanted) => {
                 format!("Текст кончился, а не хватает «{}»", token(wanted))
             }
             Self::NotSupportedYet | Self::NotAnalysed | Self::NotInterpreted => {
@@ -347,7 +371,7 @@ impl Reason {
             }
             Self::FunctionAsName => "Имя встроенной функции использовано как переменная".into(),
             Self::AssignToValue => "Присваивать можно только переменной или элементу таблицы.".into(),
-            Self::Mismatched => "Левый и правый операнд имеют несовпадающие типы.".into(),
+            Self::Mismatched(_) => "Левый и правый операнд имеют несовпадающие типы.".into(),
             Self::ImplicitCast(kind) => format!("Значение справа будет приведено к типу «{}»", kinds_in_russian(kind)),
             Self::TypeMismatch => "Несоответствие типов".into(),
             Self::NoType => "Неподходящий тип".into(),
@@ -372,6 +396,12 @@ impl Reason {
                 "Число {} будет прочитано как {value}. Наибольшее число 2147483647, а 0 впереди \
                  означает восьмеричную запись.",
                 short(text)
+            ),
+            Self::OutOfRange(number) => format!(
+                "{} не входит в целые числа, которые берёт блок: от {} до {}.",
+                float_text(*number),
+                i32::MIN,
+                i32::MAX
             ),
             Self::DivisionByZero
             | Self::RandomOfNothing
@@ -426,10 +456,10 @@ impl Reason {
             // `russian` has the words of these.
             Self::TextTooLong
             | Self::UnknownSymbols(_)
-            | Self::UnexpectedToken
+            | Self::UnexpectedToken(..)
             | Self::UnexpectedEnd
             | Self::Expected(..)
-            | Self::ExpectedAtEnd(..)
+            | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
             | Self::TooDeep
             | Self::CountsDiffer
@@ -437,7 +467,7 @@ impl Reason {
             | Self::TooManyNames
             | Self::FunctionAsName
             | Self::AssignToValue
-            | Self::Mismatched
+            | Self::Mismatched(_)
             | Self::ImplicitCast(_)
             | Self::TypeMismatch
             | Self::NoType
@@ -450,35 +480,10 @@ impl Reason {
             | Self::TooFewArguments(_)
             | Self::NotAnalysed
             | Self::OddNumber(..)
+            | Self::OutOfRange(_)
             | Self::NotInterpreted => String::new(),
         }
     }
-}
-
-/// The name that was meant.
-pub(super) fn did_you_mean(known: &str) -> Words {
-    let known = short(written(known));
-    Words::new(
-        format!("Did you mean '{known}'?"),
-        format!("Может быть, '{known}'?"),
-    )
-}
-
-/// A name that no text has taught a type, and the one that was meant.
-pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
-    let name = short(written(name));
-    let meant = meant.map_or_else(|| Words::new("", ""), did_you_mean);
-    let space = if meant.english.is_empty() { "" } else { " " };
-    Words::new(
-        format!(
-            "Nothing has given '{name}' a value.{space}{}",
-            meant.english
-        ),
-        format!(
-            "Переменной '{name}' нигде не присвоено значение.{space}{}",
-            meant.russian
-        ),
-    )
 }
 
 /// The beginning of a text that may be very long.
@@ -489,6 +494,14 @@ fn short(text: &str) -> String {
         shown.push_str("...");
     }
     shown
+}
+
+/// A token in quotes, if it has none of its own.
+fn quoted(text: &str) -> String {
+    match text.starts_with(['"', '\'']) {
+        true => short(text),
+        false => format!("\"{}\"", short(text)),
+    }
 }
 
 /// Symbols that begin nothing, with what they may be meant for.

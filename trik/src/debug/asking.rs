@@ -32,6 +32,16 @@ impl Asked {
         }
     }
 
+    /// What counts if nobody answers.
+    fn unanswered(&self) -> Answer {
+        let question = Question {
+            variable: &self.variable,
+            prompt: &self.prompt,
+            default: &self.default,
+        };
+        question.unanswered()
+    }
+
     /// Whether this is the same question, whatever was answered before.
     fn is_of(&self, other: &Self) -> bool {
         let key = |asked: &Self| {
@@ -53,12 +63,12 @@ impl Asked {
 /// Whether somebody is there to answer.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub(crate) enum Listener {
-    /// Nobody, from the beginning: a question has no answer, as in a run that is judged.
+    /// Nobody, from the beginning: the first question is told, and what it proposes counts, as in a run that is judged.
     #[default]
     Nobody,
     /// A person.
     Person,
-    /// Nobody any more: what a question proposes counts.
+    /// Nobody any more, which was told: the same counts.
     Gone,
 }
 
@@ -158,12 +168,11 @@ impl Inner {
             Listener::Person => self.ask_person(asked),
             Listener::Nobody => {
                 if !std::mem::replace(&mut self.has_missed, true) {
-                    self.missed = Some(asked);
+                    self.missed = Some(asked.clone());
                 }
-                Answer::Cancelled
+                asked.unanswered()
             }
-            Listener::Gone if asked.default.is_empty() => Answer::Cancelled,
-            Listener::Gone => Answer::Text(asked.default),
+            Listener::Gone => asked.unanswered(),
         }
     }
 
@@ -294,11 +303,11 @@ mod tests {
     }
 
     #[test]
-    fn without_a_person_a_question_has_no_answer_or_what_it_proposes() {
+    fn without_a_person_what_a_question_proposes_counts() {
         let mut asking = Asking::default();
-        assert_eq!(ask(&mut asking, "n"), Answer::Cancelled);
+        assert_eq!(ask(&mut asking, "n"), text("1"));
         assert_eq!(asking.missed().expect("a question").variable, "n");
-        assert_eq!(ask(&mut asking, "n"), Answer::Cancelled);
+        assert_eq!(ask(&mut asking, "m"), Answer::Cancelled);
         assert_eq!(asking.missed(), None, "once");
         asking.attend(Listener::Person);
         assert_eq!(ask(&mut asking, "n"), Answer::Waiting);

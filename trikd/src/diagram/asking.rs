@@ -126,10 +126,7 @@ impl Asking {
             number: self.count,
             until,
             answer: None,
-            default: match question.default {
-                "" => Answer::Cancelled,
-                text => Answer::Text(text.to_owned()),
-            },
+            default: question.unanswered(),
         });
     }
 

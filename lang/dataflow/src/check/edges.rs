@@ -2,7 +2,9 @@
 //!
 //! Owns what does not fit. Types are those of `types`.
 
+use super::constants;
 use super::found::{Found, port_place};
+use super::through::{Made, Through};
 use super::types::{Of, Types};
 use super::units::{Units, assigned_last};
 use super::words;
@@ -17,12 +19,15 @@ use std::rc::Rc;
 /// Edges whose tokens their port cannot take, and inputs that a block needs and that have no edge.
 pub(super) fn look(program: &Program, types: &Types, found: &mut Found) {
     let mut texts = Texts::of(program);
+    let through = Through::of(program, &types.outs);
     for id in 0..program.nodes.len() as NodeId {
         for (port, to) in program.edges(id) {
             let of = types.outs[id as usize][usize::from(port)];
-            let from = Target { node: id, port };
-            look_at_edge(of, (from, to), &mut texts, found);
-            look_at_word(of, (from, to), &mut texts, found);
+            for made in through.made(Target { node: id, port }, of) {
+                look_at_edge(made, to, &mut texts, found);
+                look_at_word(made, to, &mut texts, found);
+                constants::look(program, made, to, found);
+            }
         }
         look_at_inputs(program, id, found);
     }
@@ -40,7 +45,8 @@ struct Texts<'a> {
     constants: HashMap<(NodeId, u8), Option<Rc<str>>>,
 }
 
-fn look_at_edge(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, found: &mut Found) {
+fn look_at_edge(made: Made, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
+    let Made { of, by } = made;
     let program = texts.program;
     let node = program.node(to.node);
     let Some(port) = node.row.ports.get(usize::from(to.port)) else {
@@ -49,7 +55,7 @@ fn look_at_edge(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, fou
     let place = || port_place(program, to.node, to.port);
     let is_unit = of == Of::Unit && port.of.is_data();
     if is_unit && (!is_trigger(node.row.does) || texts.reads_token(to)) {
-        match texts.units.text(from.node, from.port) {
+        match texts.units.text(by.node, by.port) {
             Some(formula) => texts.tell_assignment(formula, port.name, found),
             None => found.warn(place(), words::unit_here(port.name)),
         }
@@ -201,7 +207,8 @@ fn choices(row: &Row, port: u8) -> Option<&'static [&'static str]> {
 }
 
 /// A token that is none of the words that its port takes.
-fn look_at_word(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, found: &mut Found) {
+fn look_at_word(made: Made, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
+    let Made { of, by } = made;
     let program = texts.program;
     let Some(choices) = choices(program.node(to.node).row, to.port) else {
         return;
@@ -212,7 +219,7 @@ fn look_at_word(of: Of, (from, to): (Target, Target), texts: &mut Texts<'_>, fou
             found.error(place(), words::no_word(of.words(), choices));
         }
         Of::Text => {
-            if let Some(text) = texts.constant(from)
+            if let Some(text) = texts.constant(by)
                 && chosen(choices, &text).is_none()
             {
                 found.error(place(), crate::words::no_choice(&text, choices));

@@ -4,6 +4,7 @@
 
 use super::arrivals::Arrivals;
 use super::components;
+use super::constants;
 use super::found::{Found, port_place, property_place};
 use super::instant;
 use super::words;
@@ -11,7 +12,7 @@ use super::writers;
 use crate::blocks::Direction;
 use crate::limits;
 use crate::program::{Act, Flow, NodeId, Op, Program, Source, Target};
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::Port;
 use std::collections::{HashMap, HashSet};
 
 pub(super) fn look(program: &Program, arrivals: &Arrivals, found: &mut Found) {
@@ -248,11 +249,7 @@ fn node(program: &Program, id: NodeId, found: &mut Found) {
 
 /// Numbers that stand in properties and mean something else: powers that no motor has, borders in the wrong order.
 fn numbers(program: &Program, came: u16, id: NodeId, found: &mut Found) {
-    const FULL_POWER: i32 = 100;
-    let is_too_much = |port: Port, power: i32| {
-        port.sort() == Sort::Motor && !(-FULL_POWER..=FULL_POWER).contains(&power)
-    };
-    let mut powers: Vec<(String, i32)> = Vec::new();
+    let mut powers: Vec<(String, (Port, i32))> = Vec::new();
     let starts = program.node(id).row.control();
     // Without a start they do not count.
     if starts.is_none_or(|port| came & (1 << port) == 0) {
@@ -260,13 +257,11 @@ fn numbers(program: &Program, came: u16, id: NodeId, found: &mut Found) {
     }
     match &program.node(id).op {
         Op::Act(Act::Drive { devices, .. }) => {
-            let much = devices
-                .iter()
-                .filter(|(port, power)| is_too_much(*port, *power));
-            powers.extend(much.map(|(port, power)| (format!("{}Power", port.name()), *power)));
+            let named = |told: &(Port, i32)| (format!("{}Power", told.0.name()), *told);
+            powers.extend(devices.iter().map(named));
         }
-        Op::Act(Act::WritePort { port, value }) if is_too_much(*port, *value) => {
-            powers.push(("portImpulse".to_owned(), *value));
+        Op::Act(Act::WritePort { port, value }) => {
+            powers.push(("portImpulse".to_owned(), (*port, *value)));
         }
         Op::Flow(Flow::Random { bounds, .. }) => {
             let number = |at: usize| {
@@ -282,11 +277,10 @@ fn numbers(program: &Program, came: u16, id: NodeId, found: &mut Found) {
         }
         Op::Flow(_) | Op::Source(_) | Op::Act(_) => {}
     }
-    for (name, power) in powers {
-        let place = property_place(program, id, &name);
-        found.warn(
-            place,
-            words::too_much_power(power, power.clamp(-FULL_POWER, FULL_POWER)),
-        );
+    for (name, (port, power)) in powers {
+        if let Some(counts) = constants::counts_as(port, power) {
+            let place = property_place(program, id, &name);
+            found.warn(place, words::too_much_power(power, counts));
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 mod beginners;
 mod limits;
+mod subprograms;
 mod variables;
 
 use super::*;

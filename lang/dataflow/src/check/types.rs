@@ -6,19 +6,19 @@ use super::conditions;
 use super::fed::input;
 use super::first;
 use super::found::Found;
-use super::givers::{Known, Variables};
+use super::givers::{Known, Variables, gives};
 use super::statements;
 use super::tokens::{self, taken};
 use super::unassigned::Unassigned;
 use super::units::assigned_last;
 use super::words;
-use crate::blocks::Kind;
+use crate::blocks::{Kind, Row};
 use crate::limits;
 use crate::lower::DATA;
-use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target};
+use crate::program::{Act, Camera, Flow, NodeId, Op, Program, Read, Source as Gives, Target, Text};
 use crate::sensors;
 use lang_diagram::ports::Sort;
-use lang_expr::names::own_name;
+use lang_expr::names::{is_own, own_name, written};
 use lang_expr::reserved::Shape;
 use lang_expr::tree::Node as Part;
 use lang_expr::{Names, Source, Type, Value, Wanted};
@@ -322,7 +322,7 @@ impl<'a> Inference<'a> {
             };
             self.texts[index] = match (known, &outcome) {
                 (Known::All, Ok(())) => self.result(&source),
-                (Known::Never, _) => Of::Any,
+                (Known::Never, _) => self.own_result(text, &source).unwrap_or(Of::Any),
                 // What is not known yet, or not understood before other texts are, may be known later.
                 (Known::All | Known::NotYet, _) => Of::Never,
             };
@@ -369,10 +369,7 @@ impl<'a> Inference<'a> {
             if !source.names().any(|one| one == *name) {
                 continue;
             }
-            let port = match text.own == DATA {
-                true => node.row.port("DATA"),
-                false => node.row.port(name),
-            };
+            let port = own_port(node.row, text.own, name);
             let ins = &self.types.ins[text.node as usize];
             let of = port.map_or(Of::Any, |port| ins[usize::from(port)]);
             let slot = self.names.slot(&own_name(name, text.node));
@@ -410,6 +407,19 @@ impl<'a> Inference<'a> {
             return Of::List(u16::try_from(fields.len()).unwrap_or(0));
         }
         Of::of_type(source.type_of(last, &self.names))
+    }
+
+    /// What an expression gives whose last statement is a name of its own and nothing else: what comes there.
+    fn own_result(&self, text: &Text, source: &Source) -> Option<Of> {
+        let tree = source.tree();
+        let &last = tree.statements().last()?;
+        let Part::Name(name) = tree.node(last) else {
+            return None;
+        };
+        let is_own = is_own(name) && !gives(tree).contains(name);
+        let port = own_port(self.program.node(text.node).row, text.own, written(name));
+        let ins = &self.types.ins[text.node as usize];
+        is_own.then_some(ins[usize::from(port?)])
     }
 
     fn pass(&mut self) {
@@ -547,5 +557,13 @@ impl<'a> Inference<'a> {
             let out = &mut self.types.outs[id as usize][usize::from(port)];
             *out = out.join(of);
         }
+    }
+}
+
+/// The port whose tokens a name of a block's own stands for.
+fn own_port(row: &Row, own: &[&str], name: &str) -> Option<u8> {
+    match own == DATA {
+        true => row.port("DATA"),
+        false => row.port(name),
     }
 }

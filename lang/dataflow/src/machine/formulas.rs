@@ -340,7 +340,7 @@ impl Formulas {
                 let kept = kept_types(&source, &self.names);
                 let placed = problems.into_iter().map(|problem| Problem {
                     place: program.property_place(text.node, text.property, problem.place.position),
-                    words: match kept.is_empty() {
+                    words: match kept.is_empty() || problem.hint.is_some() {
                         true => problem.words,
                         false => words::kept_types(&problem.words, &kept),
                     },
@@ -361,8 +361,7 @@ impl Formulas {
         if let (Type::Int, Value::Float(_)) = (of, &value) {
             self.names.retype(slot, &value);
         } else if !is_of(of, &value) {
-            let wanted = self.names.type_name(of);
-            return Err(words::wrong_type(name, &value, &wanted));
+            return Err(self.names.refused(slot, &value));
         }
         let set = self.store.set(slot, value);
         set.map_err(|_| words::too_many_variables())

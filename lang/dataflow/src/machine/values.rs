@@ -27,7 +27,7 @@ pub fn whole(value: &Value) -> Result<i32, Words> {
     } else if rounded.is_nan() {
         Err(words::no_whole(value))
     } else {
-        Err(words::too_large(value))
+        Err(words::too_large_number(value))
     }
 }
 

@@ -4,17 +4,13 @@
 
 use crate::limits;
 pub(crate) use crate::words::{
-    bad_width, busy_instant, loop_step, no_choice, too_large_token, too_many_names,
+    bad_width, busy_instant, loop_step, no_choice, too_large_number, too_large_token,
+    too_many_names,
 };
-use crate::words::{list, short};
+use crate::words::{list, short, what};
 use lang_expr::Value;
 use lang_text::near;
 use lang_text::problem::Words;
-
-/// What a value is, as a person reads it.
-fn what(value: &Value) -> String {
-    short(&value.brief())
-}
 
 pub(crate) fn unit() -> Words {
     Words::new(
@@ -41,23 +37,6 @@ pub(crate) fn no_whole(value: &Value) -> Words {
     Words::new(
         format!("{} is not a whole number", what(value)),
         format!("{} не целое число", what(value)),
-    )
-}
-
-pub(crate) fn too_large(value: &Value) -> Words {
-    Words::new(
-        format!(
-            "{} is too large: whole numbers are from -{} to {}",
-            what(value),
-            i32::MAX,
-            i32::MAX
-        ),
-        format!(
-            "{} слишком велико: целые числа - от -{} до {}",
-            what(value),
-            i32::MAX,
-            i32::MAX
-        ),
     )
 }
 
@@ -93,21 +72,6 @@ pub(crate) fn list_short(found: usize, wanted: usize) -> Words {
     Words::new(
         format!("a list of at least {wanted} items is needed, this one has {found}"),
         format!("нужен список хотя бы из {wanted} элементов, а в этом: {found}"),
-    )
-}
-
-pub(crate) fn wrong_type(name: &str, value: &Value, wanted: &str) -> Words {
-    Words::new(
-        format!(
-            "the variable {} is of type {wanted}, and {} is not",
-            short(name),
-            what(value)
-        ),
-        format!(
-            "переменная {} имеет тип {wanted}, а {} нет",
-            short(name),
-            what(value)
-        ),
     )
 }
 

@@ -3,7 +3,7 @@
 //! Owns what is wrong with one whatever the program does: a text that cannot be read, a name that nothing gives a value,
 //! types that never fit, and what would change the run. Computes nothing.
 
-use super::{Flow, each_node, given, taught};
+use super::{Flow, Taught, each_node, given, taught};
 use crate::program::{Leads, Program};
 use crate::words;
 use lang_expr::reserved::SENSORS;
@@ -61,7 +61,7 @@ pub(crate) fn mistakes(known: &Known<'_>, text: &str) -> Vec<Problem> {
     // Perhaps the program has not come to what teaches a name.
     let mut names = known.names.clone();
     let flow = Flow::of(known.program);
-    let (texts, unknown) = taught(known.program, &flow, &mut names);
+    let Taught { texts, unknown, .. } = taught(known.program, &flow, &mut names);
     let given = given(known.program, &flow, &texts);
     lacking.retain(|(name, _)| !given.contains(name));
     if !lacking.is_empty() {
@@ -130,7 +130,7 @@ pub(crate) fn fights(known: &Known<'_>, variable: &str, statement: &str) -> bool
         if lang_expr::analyse(&mut source, &mut names).is_err() {
             return usize::MAX;
         }
-        let (mut texts, _) = taught(known.program, &flow, &mut names);
+        let Taught { mut texts, .. } = taught(known.program, &flow, &mut names);
         // All names are known by now, and a text teaches none.
         let is_wrong = |text: &mut Source| lang_expr::analyse(text, &mut names).is_err();
         texts

@@ -104,3 +104,43 @@ fn parameters_are_known_in_their_subprogram() {
     assert_eq!(told.len(), 1, "{told:#?}");
     assert!(told[0].starts_with("main: Subprogram: '', 1:"), "{told:?}");
 }
+
+#[test]
+fn a_number_that_no_block_takes_is_told_in_its_place() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let long = sketch.block("Timer", &[("Delay", "1e10")]);
+    let product = sketch.block("Timer", &[("Delay", "60 * 60 * 1000 * 1000")]);
+    let fits = sketch.block("Timer", &[("Delay", "2147483647")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, long, product, fits, end]);
+    let problems = check(&sketch.project(), World::default());
+    assert!(
+        problems
+            .iter()
+            .all(|problem| problem.severity == Severity::Error)
+    );
+    assert_eq!(
+        lines(&sketch, Locale::English),
+        [
+            "main: Timer: 'Delay (ms)', 1:1 1e+10 is beyond the whole numbers that a block takes: -2147483648 to 2147483647.",
+            "main: Timer: 'Delay (ms)', 1:1 3.6e+09 is beyond the whole numbers that a block takes: -2147483648 to 2147483647.",
+        ]
+    );
+}
+
+#[test]
+fn a_variable_of_two_types_is_told_with_both() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let number = code(&mut sketch, "speed = 5");
+    let text = code(&mut sketch, "speed = 'fast'");
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, number, text, end]);
+    let told = lines(&sketch, Locale::English);
+    let wanted = "'speed' is of the type 'integer', and this gives it 'string'";
+    assert!(told.iter().any(|line| line.contains(wanted)), "{told:#?}");
+    let told = lines(&sketch, Locale::Russian);
+    let wanted = "'speed' \u{438}\u{43c}\u{435}\u{435}\u{442} \u{442}\u{438}\u{43f} \u{ab}\u{446}\u{435}\u{43b}\u{44b}\u{439}\u{bb}, \u{430} \u{43f}\u{43e}\u{43b}\u{443}\u{447}\u{430}\u{435}\u{442} \u{ab}\u{442}\u{435}\u{43a}\u{441}\u{442}\u{bb}";
+    assert!(told.iter().any(|line| line.contains(wanted)), "{told:#?}");
+}

@@ -69,13 +69,18 @@ impl Formulas {
             Some((index, source.anew()))
         });
         let mut read: Vec<_> = read.collect();
-        for (_, source) in &mut read {
-            // What is wrong by now may be right when all names are known.
-            let _ = lang_expr::analyse(source, &mut names);
-        }
-        let looked = read.iter_mut().filter_map(|(index, source)| {
+        // What is wrong by now may be right when all names are known.
+        let before: Vec<_> = read
+            .iter_mut()
+            .map(|(_, source)| lang_expr::analyse(source, &mut names).err())
+            .collect();
+        let looked = read.iter_mut().zip(before);
+        let looked = looked.filter_map(|((index, source), before)| {
             let problems = lang_expr::analyse(source, &mut names).err()?;
-            Some((*index, problems))
+            // A variable whose type did not fit has none afterwards, so only the first look could say which it had.
+            let has_hint = |problems: &Vec<Problem>| problems.iter().any(|one| one.hint.is_some());
+            let before = before.filter(|before| has_hint(before) && !has_hint(&problems));
+            Some((*index, before.unwrap_or(problems)))
         });
         looked.collect()
     }

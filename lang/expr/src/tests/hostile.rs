@@ -6,6 +6,7 @@ use crate::tree::{Binary, Id, Node, Tree, Unary};
 use crate::types::{Element, Possible, Type, Types};
 use crate::{Compat, Kit, Names, Outside, Source, Store, Value, Wanted, analyse, evaluate, parser};
 use crate::{escape, unescape};
+use lang_text::problem::Problem;
 use proptest::prelude::*;
 
 /// A robot with nothing to say.
@@ -29,12 +30,19 @@ impl Outside for Nobody {
 
 /// The first message about a text.
 fn message(text: &str) -> String {
+    let all = messages(text);
+    all.split(" | ").next().unwrap_or_default().to_owned()
+}
+
+/// All messages about a text.
+fn messages(text: &str) -> String {
     let mut names = Names::new(Kit::V62, Compat::Studio);
     let mut source = Source::new(text, Wanted::Any);
     match analyse(&mut source, &mut names) {
         Err(problems) => {
             assert!(problems.len() <= limits::EXPRESSION_PROBLEMS_MAX);
-            problems[0].to_string()
+            let told: Vec<String> = problems.iter().map(Problem::to_string).collect();
+            told.join(" | ")
         }
         Ok(()) => {
             let mut store = Store::default();
@@ -46,7 +54,9 @@ fn message(text: &str) -> String {
 #[test]
 fn deep_nesting_is_refused_where_it_begins() {
     let depth = 100_000 / 2;
+    let closed = "(".repeat(250) + "1" + &")".repeat(250);
     for text in [
+        closed,
         "(".repeat(depth),
         "-".to_owned() + &"~".repeat(depth),
         "{".repeat(depth),
@@ -58,12 +68,13 @@ fn deep_nesting_is_refused_where_it_begins() {
         "a".to_owned() + &"[0]".repeat(depth / 3),
         "f".to_owned() + &"()".repeat(depth / 2),
     ] {
-        let told = message(&text);
+        let told = messages(&text);
         assert!(
             told.contains("The expression is nested too deeply: at most 200 levels"),
             "{}: {told}",
             &text[..10]
         );
+        assert!(!told.contains(" | "), "{}: {told}", &text[..10]);
     }
 }
 
@@ -430,4 +441,58 @@ fn operators_are_found_by_their_signs() {
         tree.node(tree.root.unwrap()),
         Node::Binary(Binary::BitXor, 0, 2)
     ));
+}
+
+#[test]
+fn a_message_never_names_the_same_token_twice() {
+    for (text, wanted) in [
+        ("((1)", "1:4 Expected \")\", got the end of the text"),
+        ("f(1,,2)", "1:5 Unexpected token \",\""),
+        ("(1 2)", "1:4 Expected \")\", got \"integer literal\""),
+        ("a.", "1:2 Expected \"identifier\", got the end of the text"),
+        (
+            "f(",
+            "1:2 Unexpected end of input. Something is missing after this.",
+        ),
+        ("x => 2", "1:4 Unexpected token \">\". Did you mean '>='?"),
+        (
+            "x = 1 = 2",
+            "1:7 Unexpected token \"=\". Did you mean '=='?",
+        ),
+        ("x = 1 )'b'", "1:7 Unexpected token \")\""),
+    ] {
+        assert_eq!(messages(text), wanted, "{text}");
+    }
+}
+
+#[test]
+fn a_block_gets_the_end_of_the_range_and_never_the_low_bits() {
+    let number = |text: &str| {
+        let mut names = Names::new(Kit::V62, Compat::Studio);
+        let mut source = Source::new(text, Wanted::Int);
+        analyse(&mut source, &mut names).unwrap();
+        let is_told = source.out_of_range().is_some();
+        let (mut store, mut nobody) = (Store::default(), Nobody);
+        let value = evaluate(&source, &names, &mut store, &mut nobody).unwrap();
+        let whole = crate::evaluate_int(&source, &names, &mut store, &mut nobody).unwrap();
+        assert!(matches!(value, Value::Int(same) if same == whole), "{text}");
+        (whole, is_told)
+    };
+    for (text, whole, is_told) in [
+        ("1e10", i32::MAX, true),
+        ("0 - 1e10", i32::MIN, true),
+        ("-1e300", i32::MIN, true),
+        ("3000000000.0", i32::MAX, true),
+        ("60 * 60 * 1000 * 1000", i32::MAX, true),
+        ("2147483647.4", i32::MAX, false),
+        ("x = 1e10 x", i32::MAX, false),
+        ("x = 3 x", 3, false),
+        ("'10000000000'", i32::MAX, false),
+        ("max(1e10, 1)", i32::MAX, false),
+        ("65536 * 65536 // 1", 0, false),
+        ("2.5", 3, false),
+        ("0 - 2.5", -2, false),
+    ] {
+        assert_eq!(number(text), (whole, is_told), "{text}");
+    }
 }

@@ -244,3 +244,34 @@ fn numbers_beyond_what_a_property_takes_are_numbers() {
         "error: main: Loop 'L': 'border': 'inf' is not a number, and",
     );
 }
+
+#[test]
+fn numbers_that_do_not_fit_where_they_come_are_told_there() {
+    for (text, wanted) in [
+        (
+            "V Value generator {varValue=1e6}\nW Wait and send\nM Motors\nV.OUT > M.M3\nM.CF_OUT > W.CF_IN",
+            "warning: main: Motors 'M': 'M3': a power of 1000000 counts as 100: write a number from -100 to 100",
+        ),
+        (
+            "V Text programming {IO0=0 - 101}\nW Wait and send\nM Specific input\nV.O0 > M.DATA\nM.CF_OUT > W.CF_IN",
+            "warning: main: Specific input 'M': 'DATA': a power of -101 counts as -100: write a number from -100 to 100",
+        ),
+        (
+            "V Value generator {varValue=1e10}\nW Wait and send\nV.OUT > W.TIME\nS Sensor\nS.OUT > W.DATA\nT Say\nW.OUT > T.DATA",
+            "error: main: Wait and send 'W': 'TIME': 1e+10 is too large: whole numbers are from -2147483647 to 2147483647",
+        ),
+        (
+            "V Text programming {IO0=60 * 60 * 1000 * 1000}\nW Wait and send\nV.O0 > W.TIME\nS Sensor\nS.OUT > W.DATA\nT Say\nW.OUT > T.DATA",
+            "error: main: Wait and send 'W': 'TIME': 3.6e+09 is too large: whole numbers are from -2147483647 to 2147483647",
+        ),
+    ] {
+        only(text, wanted);
+    }
+    for text in [
+        "V Value generator {varValue=100}\nW Wait and send\nM Motors\nV.OUT > M.M3\nM.CF_OUT > W.CF_IN",
+        // An angle has the range of its servo, which the configuration says.
+        "V Value generator {varValue=120}\nW Wait and send\nM Servo motors\nV.OUT > M.S1\nM.CF_OUT > W.CF_IN",
+    ] {
+        assert_eq!(told(text), Vec::<String>::new(), "{text}");
+    }
+}

@@ -179,7 +179,7 @@ fn a_version_that_gives_a_variable_another_type_is_refused() {
     };
     let why = problems[0].in_locale(Locale::English).to_string();
     assert!(
-        why.contains("mismatched types; variables keep the types that they have in the running program, where n is of type integer, k is of type integer: start"),
+        why.contains("'k' is of the type 'integer', and this gives it 'string': a variable keeps its type until the program starts anew. Give it 'integer', or take another name."),
         "{why}"
     );
     // A list keeps its type, whatever its first item is.

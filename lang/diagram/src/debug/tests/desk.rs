@@ -173,6 +173,10 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
             "set n=99999999999999999999",
             "1:1 The number 99999999999999999999 counts as 0.",
         ),
+        (
+            "set n='one'",
+            "'n' is of the type 'integer', and this gives it 'string': a variable keeps its type until the program starts anew. Give it 'integer', or take another name.",
+        ),
     ] {
         let answer = stage.order(order);
         assert!(answer.contains(why), "{order}: {answer}");

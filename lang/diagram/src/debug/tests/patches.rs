@@ -194,3 +194,22 @@ fn no_command_to_a_motor_is_missing_when_a_coefficient_changes() {
         assert!(!later.iter().any(|(_, said)| said.contains("43")));
     }
 }
+
+#[test]
+fn a_version_with_another_type_is_refused_with_the_variable_and_both_types() {
+    let (project, ids) = three();
+    let mut desk = Desk::of(&project);
+    desk.run(5);
+    let other = with(&project, &ids[1], "a = 0; c = 0; v = 0");
+    let version = Version::of(&with(&other, &ids[5], "b = 'text'"), World::default());
+    let Desk { session, robot, .. } = &mut desk;
+    let patched = session.patch(&version.unwrap(), WhenGone::End, robot, &mut Deaf);
+    let Err(Refused::Mistakes(problems)) = patched else {
+        panic!("{patched:?}");
+    };
+    let told = problems[0].to_string();
+    assert!(
+        told.contains("'b' is of the type 'integer', and this gives it 'string'"),
+        "{told}"
+    );
+}
