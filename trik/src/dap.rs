@@ -20,6 +20,7 @@ use crate::refusal::{Refusal, UNREADABLE};
 use clap::Args;
 use client::Client;
 use nix::unistd::getuid;
+use owner::Owner;
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 
@@ -61,11 +62,10 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
     loop {
         let (stream, peer) = listener.accept().map_err(failed)?;
         // A client can run programs as we do. An address for other computers lets everybody in.
-        if bound.ip().is_loopback() && !is_own(peer, &stream) {
-            let _ = writeln!(
-                io::stderr(),
-                "trik dap: {peer} is turned away: a program of another user"
-            );
+        if bound.ip().is_loopback()
+            && let Some(why) = why_not(peer, &stream)
+        {
+            let _ = writeln!(io::stderr(), "trik dap: {peer} {why}");
             continue;
         }
         let Ok(input) = stream.try_clone() else {
@@ -77,10 +77,11 @@ pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
     }
 }
 
-/// Whether a client of this computer is a program of ours.
-fn is_own(peer: SocketAddr, stream: &TcpStream) -> bool {
-    let Ok(here) = stream.local_addr() else {
-        return false;
+/// Why a client of this computer is not served; none: it is a program of ours.
+fn why_not(peer: SocketAddr, stream: &TcpStream) -> Option<&'static str> {
+    let client = match stream.local_addr() {
+        Ok(here) => owner::of(peer, here),
+        Err(_) => Owner::Gone,
     };
-    owner::may_command(owner::of(peer, here), getuid().as_raw())
+    owner::why_not(client, getuid().as_raw())
 }

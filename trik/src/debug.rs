@@ -1,11 +1,13 @@
 //! `trik debug`: a debugger for diagrams, forwards and backwards, and for data-flow programs, in a terminal.
 //!
 //! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process, one in the network is
-//! in `remote::debugged`; `terminal` talks to a person, `signals` has Ctrl-C, `asking` the program's questions to a person,
+//! in `remote::debugged`; `terminal` talks to a person, `lines` reads what is typed, `complete` what Tab offers, `signals` has Ctrl-C, `asking` the program's questions to a person,
 //! `stops` says where it is stopped, `listing` is the program as text, `words` what can be typed, `report` what comes back.
 //! The debuggers themselves are in `lang_diagram::debug` and `lang_dataflow::debug`.
 
 pub(crate) mod asking;
+mod complete;
+mod lines;
 pub(crate) mod listing;
 pub(crate) mod report;
 mod signals;
@@ -13,7 +15,7 @@ pub(crate) mod stage;
 pub(crate) mod stops;
 pub(crate) mod target;
 mod terminal;
-mod words;
+pub(crate) mod words;
 
 use crate::check::{CheckArgs, NO_BLOCKS, Ready, Staged, Start, model_seconds, staged};
 use crate::error::Error;

@@ -223,8 +223,14 @@ pub(crate) const WEIGHT_MAX: f64 = 1e6;
 pub const DEBUG_POSES_MAX: usize = 360_000;
 /// Calls of a thread that `trik debug` shows.
 pub const DEBUG_CALLS_SHOWN: usize = 100;
+/// Blocks of one name that are shown to who has to choose one.
+pub const CHOICES_MAX: usize = 8;
+/// Characters of the line of each.
+pub const CHOICE_CHARS_MAX: usize = 40;
 /// Bytes of a line that is typed at `trik debug`.
 pub const DEBUG_LINE_BYTES: usize = 16_384;
+/// Lines that can be had back there.
+pub const DEBUG_HISTORY_LINES: usize = 1000;
 /// Requests of an editor that debugs which wait for their turn.
 pub const DAP_WAITING: usize = 1000;
 /// Bytes of a sentence about a robot that is looked for in another language; what programs say may be longer.

@@ -1,5 +1,5 @@
-// A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP; and programs in
-// Python and JavaScript on a virtual robot, if TRIK_DEBUGPY_PYTHON names the python3 of an environment that has debugpy.
+// A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP; a program of data
+// flow; and programs in Python and JavaScript on a virtual robot, if TRIK_DEBUGPY_PYTHON names the python3 of an environment that has debugpy.
 //
 // usage: node test/debug.js TRIK
 "use strict";
@@ -81,6 +81,42 @@ async function talk(client) {
   await client.continueRequest({ threadId });
   await ended;
   await client.disconnectRequest();
+}
+
+// A program of data flow, by the file that holds its text: a breakpoint by a label, the token that comes, a step back.
+async function flow(trik) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "trik-dap-"));
+  const file = path.join(folder, "count.flow");
+  fs.writeFileSync(file, `diagram "Counter"
+  numbers: Loop(start_border = 1, end_border = 9, increment = 1, time = 100)
+  sum: "Text programming"(IO0 = \`sum = 2 * I0; sum\`)
+  wheels: Motors
+  numbers.OUT -> sum.I0
+  sum.O0 -> wheels.M3
+`);
+  const client = new DebugClient(trik, "dap", "trik");
+  await client.start();
+  const { launched } = await begun(client, { program: file });
+  const names = [{ name: "wheels", condition: "data > 6" }, { name: "whels" }];
+  const set = await client.setFunctionBreakpointsRequest({ breakpoints: names });
+  assert.deepStrictEqual(set.body.breakpoints.map((one) => one.verified), [true, false]);
+  assert.match(set.body.breakpoints[1].message, /did you mean 'wheels'/);
+  let stopped = soon(client, "stopped");
+  await client.configurationDoneRequest();
+  await launched;
+  const { threadId, reason, text } = (await stopped).body;
+  assert.deepStrictEqual([reason, text], ["breakpoint", "wheels.M3 gets 8"]);
+  const value = await client.evaluateRequest({ expression: "sum", context: "hover" });
+  assert.strictEqual(value.body.result, "8");
+  stopped = soon(client, "stopped");
+  await client.stepBackRequest({ threadId });
+  assert.strictEqual((await stopped).body.text, "sum.I0 gets 4");
+  const ended = soon(client, "terminated");
+  await client.terminateRequest();
+  await ended;
+  await client.disconnectRequest();
+  fs.rmSync(folder, { recursive: true });
+  console.log("the debugger: a program of data flow");
 }
 
 // Some time for the processes on both sides.
@@ -223,6 +259,7 @@ async function main() {
   await talk(wire);
   server.kill();
   console.log("the debugger: every request over standard streams and TCP");
+  await flow(trik);
   await texts(trik);
 }
 

@@ -9,19 +9,42 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 /// have no process any more, and then the kernel shows 0 as its user.
 const ESTABLISHED: &str = "01";
 
-/// The user whose process has made this connection; none if the kernel does not say, or it is being closed.
-pub(super) fn of(peer: SocketAddr, own: SocketAddr) -> Option<u32> {
-    // A socket of IPv6 may have made a connection of IPv4.
-    let tables = ["/proc/net/tcp", "/proc/net/tcp6"];
-    tables.into_iter().find_map(|path| {
-        let table = fs::read_to_string(path).ok()?;
-        in_table(&table, plain(peer), plain(own))
-    })
+/// Who has made a connection.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Owner {
+    /// A process of this user.
+    User(u32),
+    /// Nobody any more: it is closed.
+    Gone,
+    /// The kernel does not say.
+    Unknown,
 }
 
-/// Whether a process of this user may speak with one of ours: it is ours too, or it may do everything anyway.
-pub(super) fn may_command(user: Option<u32>, own: u32) -> bool {
-    user.is_some_and(|user| user == own || user == 0)
+/// Whose process has made this connection.
+pub(super) fn of(peer: SocketAddr, own: SocketAddr) -> Owner {
+    // A socket of IPv6 may have made a connection of IPv4.
+    let tables = ["/proc/net/tcp", "/proc/net/tcp6"];
+    let tables: Vec<String> = tables
+        .into_iter()
+        .filter_map(|path| fs::read_to_string(path).ok())
+        .collect();
+    let mut users = tables.iter();
+    match users.find_map(|table| in_table(table, plain(peer), plain(own))) {
+        Some(user) => Owner::User(user),
+        None if tables.is_empty() => Owner::Unknown,
+        None => Owner::Gone,
+    }
+}
+
+/// Why a client may not speak with a process of the user `own`; none: it is a process of the same user, or one that may do
+/// everything anyway.
+pub(super) fn why_not(client: Owner, own: u32) -> Option<&'static str> {
+    match client {
+        Owner::User(user) if user == own || user == 0 => None,
+        Owner::User(_) => Some("is turned away: a program of another user"),
+        Owner::Gone => Some("has closed its connection before it was known whose program it is"),
+        Owner::Unknown => Some("is turned away: the system does not say whose program it is"),
+    }
 }
 
 fn plain(address: SocketAddr) -> (IpAddr, u16) {
@@ -75,10 +98,10 @@ mod tests {
             let own = listener.local_addr().expect("an address");
             let client = TcpStream::connect(own).expect("a connection");
             let (_stream, peer) = listener.accept().expect("a client");
-            assert_eq!(of(peer, own), Some(own_user()), "{address}");
-            assert_eq!(of(own, own), None);
+            assert_eq!(of(peer, own), Owner::User(own_user()), "{address}");
+            assert_eq!(of(own, own), Owner::Gone);
             drop(client);
-            assert_eq!(of(peer, own), None, "nobody's any more");
+            assert_eq!(of(peer, own), Owner::Gone, "nobody's any more");
         }
     }
 
@@ -125,10 +148,17 @@ mod tests {
     }
 
     #[test]
-    fn only_who_could_do_it_anyway_may_command() {
-        assert!(may_command(Some(1000), 1000) && may_command(Some(0), 1000));
-        for other in [None, Some(1001)] {
-            assert!(!may_command(other, 1000) && !may_command(other, 0));
+    fn only_who_could_do_it_anyway_may_command_and_others_are_told_apart() {
+        let why = |client| why_not(client, 1000);
+        assert_eq!((why(Owner::User(1000)), why(Owner::User(0))), (None, None));
+        for (client, said) in [
+            (Owner::User(1001), "a program of another user"),
+            (Owner::Gone, "has closed its connection"),
+            (Owner::Unknown, "the system does not say"),
+        ] {
+            let why = why(client).expect("a reason");
+            assert!(why.contains(said), "{why}");
         }
+        assert!(why_not(Owner::User(1001), 0).is_some());
     }
 }

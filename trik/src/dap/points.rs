@@ -4,6 +4,7 @@
 
 use crate::debug::listing::Listing;
 use crate::debug::target::{Target, why_not};
+use crate::debug::words::ambiguous;
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Breakpoint, Spot};
@@ -15,7 +16,7 @@ use std::fmt;
 pub(super) enum Kind {
     /// A line of the text.
     Line,
-    /// A subprogram, or all blocks of a type.
+    /// A subprogram, all blocks of a type, or one block as a person sees it.
     Name,
     /// The id of a block.
     Id,
@@ -55,6 +56,9 @@ fn text(value: &Value, name: &str) -> Box<str> {
         .into()
 }
 
+/// What is said of a name that means nothing.
+const NO_NAME: &str = "there is no subprogram and no block of this name";
+
 /// Why a breakpoint of a client is not set. Each is for the client's person to mend, or for the robot, which says why.
 #[derive(Clone, Debug, Eq, PartialEq)]
 enum Unset {
@@ -64,6 +68,10 @@ enum Unset {
     Blank(&'static str),
     /// There is no block where it should be.
     Nowhere(Kind),
+    /// There is none of this name; the one that may be meant, as a sentence to append.
+    NotNamed(String),
+    /// A name means several blocks, and how each of them is said.
+    Ambiguous(String, String),
     /// The debugger refuses it.
     Refused(String),
 }
@@ -76,7 +84,11 @@ impl fmt::Display for Unset {
                 return write!(f, "the {what} is blank: write one, or leave it out");
             }
             Self::Nowhere(Kind::Line) => "this line has no block",
-            Self::Nowhere(Kind::Name) => "there is no subprogram and no block of this name",
+            Self::Nowhere(Kind::Name) => NO_NAME,
+            Self::NotNamed(near) => return write!(f, "{NO_NAME}{near}"),
+            Self::Ambiguous(name, choices) => {
+                return f.write_str(&ambiguous(name, choices).english);
+            }
             Self::Nowhere(Kind::Id) => "there is no block with this id",
             Self::Nowhere(Kind::Variable) => "a name of a variable is wanted",
             Self::Refused(why) => why,
@@ -121,6 +133,18 @@ fn blank(one: &Value) -> Option<&'static str> {
     };
     let found = parts.into_iter().find(|(name, _)| is_blank(name));
     found.map(|(_, what)| what)
+}
+
+/// The blocks of a name.
+fn named(name: &str, listing: &Listing) -> Result<Vec<Box<str>>, Unset> {
+    match listing.named(name) {
+        Ok(blocks) if blocks.is_empty() => Err(Unset::NotNamed(listing.near(name).english)),
+        Ok(blocks) => Ok(blocks),
+        Err(blocks) => {
+            let choices = listing.choices(&blocks);
+            Err(Unset::Ambiguous(name.to_owned(), choices))
+        }
+    }
 }
 
 impl Points {
@@ -174,7 +198,10 @@ impl Points {
         let before = |blocks: Vec<Box<str>>| blocks.into_iter().map(Spot::Block).collect();
         let spots: Vec<Spot> = match kind {
             Kind::Line => before(listing.blocks(line).first().cloned().into_iter().collect()),
-            Kind::Name => before(listing.named(&text(one, "name"))),
+            Kind::Name => match named(&text(one, "name"), listing) {
+                Ok(blocks) => before(blocks),
+                Err(why) => return Ok(refused(&why)),
+            },
             Kind::Id => {
                 let id = text(one, "instructionReference");
                 before(listing.has(&id).then_some(id).into_iter().collect())

@@ -5,9 +5,11 @@
 
 use crate::diagrams::flow;
 use crate::diagrams::save::must;
+use crate::limits;
 use crate::refusal::Refusal;
 use crate::terminal::harmless;
-use lang_dataflow::project::Project as Flow;
+use lang_dataflow::blocks::Does;
+use lang_dataflow::project::{Diagram as FlowDiagram, Project as Flow};
 use lang_dataflow::show;
 use lang_diagram::blocks;
 use lang_diagram::project::Project;
@@ -40,10 +42,43 @@ pub(crate) struct Listing {
     lines: Vec<Line>,
     /// By block: its first line.
     places: HashMap<Box<str>, usize>,
-    /// Blocks of a data-flow program by what people call them.
-    callings: HashMap<String, Box<str>>,
-    /// Blocks by a name of several: where a subprogram begins, all of a type.
-    named: HashMap<String, Vec<Box<str>>>,
+    /// Blocks of a data-flow program by their labels: each has one.
+    labels: HashMap<String, Box<str>>,
+    /// Where a diagram begins, by its name.
+    begins: HashMap<String, Vec<Box<str>>>,
+    /// Blocks by what is written at them, which others may have too.
+    captions: HashMap<String, Vec<Box<str>>>,
+    /// All blocks of a type, by its name in the save.
+    kinds: HashMap<String, Vec<Box<str>>>,
+}
+
+/// What a text means that should mean a block.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub(crate) enum Meant {
+    /// No block.
+    Nothing,
+    /// This one.
+    Block(Box<str>),
+    /// Any of these.
+    Several(Vec<Box<str>>),
+}
+
+impl Meant {
+    fn of(blocks: &[Box<str>]) -> Self {
+        match blocks {
+            [] => Self::Nothing,
+            [one] => Self::Block(one.clone()),
+            [..] => Self::Several(blocks.to_vec()),
+        }
+    }
+}
+
+/// A block has a name that others may have too.
+fn name(names: &mut HashMap<String, Vec<Box<str>>>, name: &str, block: &str) {
+    let blocks = names.entry(name.to_owned()).or_default();
+    if !blocks.iter().any(|one| **one == *block) {
+        blocks.push(block.into());
+    }
 }
 
 impl Listing {
@@ -66,10 +101,20 @@ impl Listing {
         listing.find_places();
         for diagram in &project.diagrams {
             for block in &diagram.blocks {
-                if block.kind == BEGIN {
-                    listing.name(&diagram.name, &block.id);
+                if block.kind.contains("Comment") {
+                    continue;
                 }
-                listing.name(&block.kind, &block.id);
+                if block.kind == BEGIN {
+                    name(&mut listing.begins, &diagram.name, &block.id);
+                }
+                name(&mut listing.kinds, &block.kind, &block.id);
+                let row = blocks::find(&block.kind);
+                let shown = row.map(|row| row.shown_in(locale));
+                for caption in [block.name.trim(), shown.unwrap_or_default()] {
+                    if !caption.is_empty() {
+                        name(&mut listing.captions, caption, &block.id);
+                    }
+                }
             }
         }
         listing.add_others(project, locale);
@@ -77,8 +122,8 @@ impl Listing {
         listing
     }
 
-    /// A data-flow program, whose blocks people may mean by their captions too: of several with one caption the one of the
-    /// main diagram; those of subprograms also as DIAGRAM/CAPTION.
+    /// A data-flow program, whose blocks have labels: that of a block of a subprogram is also DIAGRAM/LABEL, and without the
+    /// diagram it means a block of the main one first.
     pub(crate) fn of_flow(project: &Flow, locale: Locale) -> Self {
         let mut listing = Self::default();
         for line in show::lines(project, locale) {
@@ -87,42 +132,92 @@ impl Listing {
                 blocks: line.block.iter().map(|id| id.as_str().into()).collect(),
             });
         }
-        let main = project.main.and_then(|at| project.diagrams.get(at));
-        for diagram in main.into_iter().chain(&project.diagrams) {
-            for (block, name) in diagram.blocks.iter().zip(show::callings(diagram, locale)) {
+        for (index, diagram) in project.diagrams.iter().enumerate() {
+            for (block, label) in diagram.blocks.iter().zip(show::callings(diagram, locale)) {
                 let id: Box<str> = block.id.as_str().into();
-                listing.name(&block.element, &id);
-                let long = format!("{}/{name}", diagram.name);
-                listing.callings.entry(long).or_insert_with(|| id.clone());
-                listing.callings.entry(name).or_insert(id);
+                name(&mut listing.kinds, &block.element, &id);
+                name(&mut listing.captions, &label, &id);
+                name(&mut listing.captions, block.name.trim(), &id);
+                let long = format!("{}/{label}", diagram.name);
+                listing.labels.entry(long).or_insert_with(|| id.clone());
+                if project.main == Some(index) {
+                    listing.labels.insert(label, id);
+                }
+            }
+            for block in first_blocks(diagram) {
+                name(&mut listing.begins, &diagram.name, block);
             }
         }
+        listing.captions.remove("");
         listing.find_places();
         listing
     }
 
-    /// A block has a name that others may have too.
-    fn name(&mut self, name: &str, block: &str) {
-        let blocks = self.named.entry(name.to_owned()).or_default();
-        // A diagram that is called as a type names none twice.
-        if !blocks.iter().any(|one| **one == *block) {
-            blocks.push(block.into());
-        }
-    }
-
     /// Whether it is that of a data-flow program.
     pub(crate) fn is_flow(&self) -> bool {
-        !self.callings.is_empty()
+        !self.labels.is_empty()
     }
 
-    /// The blocks that a name of several means: where a subprogram begins, or all of a type; of a data-flow program also the
-    /// one that a person calls so.
-    pub(crate) fn named(&self, name: &str) -> Vec<Box<str>> {
-        match (self.named.get(name), self.callings.get(name)) {
-            (Some(blocks), _) => blocks.clone(),
-            (None, Some(block)) => vec![block.clone()],
-            (None, None) => Vec::new(),
+    /// The blocks that a name means which may be one of several: where a diagram begins, or all of a type; else what
+    /// [`Listing::meant`] finds.
+    ///
+    /// # Errors
+    /// It means one of these, and nobody knows which.
+    pub(crate) fn named(&self, name: &str) -> Result<Vec<Box<str>>, Vec<Box<str>>> {
+        if let Some(blocks) = self.begins.get(name).or_else(|| self.kinds.get(name)) {
+            return Ok(blocks.clone());
         }
+        match self.meant(name) {
+            Meant::Nothing => Ok(Vec::new()),
+            Meant::Block(block) => Ok(vec![block]),
+            Meant::Several(blocks) => Err(blocks),
+        }
+    }
+
+    /// The block that is meant by its label, its id, the last part of that in braces, the name of the diagram that begins
+    /// with it, what is written at it, or its type.
+    pub(crate) fn meant(&self, text: &str) -> Meant {
+        if let Some(id) = self.labels.get(text) {
+            return Meant::Block(id.clone());
+        }
+        if let Some((id, _)) = self.places.get_key_value(text) {
+            return Meant::Block(id.clone());
+        }
+        let mut ids = self.places.keys();
+        let id = ids.find(|id| {
+            let before = id.strip_suffix(text);
+            text.starts_with('{') && before.is_some_and(|before| before.ends_with('/'))
+        });
+        if let Some(id) = id {
+            return Meant::Block(id.clone());
+        }
+        let names = [&self.begins, &self.captions, &self.kinds];
+        let found = names.into_iter().find_map(|names| names.get(text));
+        found.map_or(Meant::Nothing, |blocks| Meant::of(blocks))
+    }
+
+    /// How a person says which of several blocks is meant: by its line, with what stands there, or by its id if that line
+    /// means another block.
+    pub(crate) fn choices(&self, blocks: &[Box<str>]) -> String {
+        let choice = |block: &str| {
+            let line = self.line_of(block);
+            if self.blocks(line).first().map(|first| &**first) != Some(block) {
+                return harmless(block);
+            }
+            let mut text: String = self.text(line).trim().to_owned();
+            if let Some((at, _)) = text.char_indices().nth(limits::CHOICE_CHARS_MAX) {
+                text.truncate(at);
+                text.push_str("...");
+            }
+            format!("{line} ({text})")
+        };
+        let shown = blocks.iter().take(limits::CHOICES_MAX);
+        let shown = shown.map(|block| choice(block));
+        let mut shown = shown.collect::<Vec<_>>().join(", ");
+        if blocks.len() > limits::CHOICES_MAX {
+            shown.push_str(", ...");
+        }
+        shown
     }
 
     fn find_places(&mut self) {
@@ -177,26 +272,19 @@ impl Listing {
         self.places.contains_key(block)
     }
 
-    /// The id of a block that is meant by it, by its last part in braces, or by its caption in a data-flow program.
-    pub(crate) fn id_of(&self, text: &str) -> Option<&str> {
-        if let Some(id) = self.callings.get(text) {
-            return Some(id);
-        }
-        if let Some((id, _)) = self.places.get_key_value(text) {
-            return Some(id);
-        }
-        let mut ids = self.places.keys().map(|id| &**id);
-        ids.find(|id| {
-            let before = id.strip_suffix(text);
-            text.starts_with('{') && before.is_some_and(|before| before.ends_with('/'))
-        })
+    /// What blocks and diagrams are called; of a data-flow program labels, since its captions may be ambiguous.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let labels = self.labels.keys().chain(self.begins.keys());
+        let captions = self.captions.keys().filter(|_| !self.is_flow());
+        labels.chain(captions).cloned().collect()
     }
 
-    /// The label of a data-flow program that may be meant by a text which means no block, as a sentence to append; none: the
-    /// program is a diagram, whose blocks have no labels.
-    pub(crate) fn near_label(&self, text: &str) -> Option<Words> {
-        let labels = self.callings.keys().map(String::as_str);
-        (!self.callings.is_empty()).then(|| did_you_mean(text, labels))
+    /// The name that may be meant by a text which means no block, as a sentence to append.
+    pub(crate) fn near(&self, text: &str) -> Words {
+        let labels = self.labels.keys();
+        let names = [&self.begins, &self.captions];
+        let names = names.into_iter().flat_map(HashMap::keys);
+        did_you_mean(text, labels.chain(names).map(String::as_str))
     }
 
     /// The blocks of a line, from 1.
@@ -222,5 +310,89 @@ impl Listing {
         lines
             .flat_map(|line| [harmless(&line.text), "\n".to_owned()])
             .collect()
+    }
+}
+
+/// Where tokens go first that come into a subprogram: the blocks behind its inputs. Of a diagram without inputs none.
+fn first_blocks(diagram: &FlowDiagram) -> Vec<&str> {
+    let is_input = |index: usize| {
+        let row = diagram.blocks.get(index).and_then(|block| block.row);
+        row.is_some_and(|row| matches!(row.does, Does::InPort))
+    };
+    let edges = diagram.edges.iter().filter_map(|edge| {
+        let (from, to) = (edge.from?, edge.to?);
+        is_input(from.block).then_some(to.block)
+    });
+    let blocks = edges.filter_map(|index| diagram.blocks.get(index));
+    blocks.map(|block| block.id.as_str()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lang_diagram::sketch::Sketch;
+
+    fn id(text: &str) -> Box<str> {
+        text.into()
+    }
+
+    #[test]
+    fn a_name_means_a_subprogram_a_block_or_one_of_several() {
+        let mut sketch = Sketch::new();
+        let twice = sketch.subprogram("twice", &[]);
+        sketch.draw_on(twice);
+        let begin = sketch.block("InitialNode", &[]);
+        let double = sketch.block("Function", &[("Body", "m = n * 2")]);
+        let back = sketch.block("FinalNode", &[]);
+        sketch.chain(&[begin, double, back]);
+        let main = sketch.main();
+        sketch.draw_on(main);
+        let start = sketch.block("InitialNode", &[]);
+        let clear = sketch.block("Function", &[("Body", "n = 0")]);
+        let call = sketch.call(twice, &[]);
+        let wait = sketch.block("Timer", &[("Delay", "100")]);
+        let end = sketch.block("FinalNode", &[]);
+        sketch.chain(&[start, clear, call, wait, end]);
+        let project = sketch.project();
+        let ids = |kind: &str| -> Vec<Box<str>> {
+            let blocks = project.diagrams.iter().flat_map(|one| &one.blocks);
+            let blocks = blocks.filter(|block| block.kind == kind);
+            blocks.map(|block| id(&block.id)).collect()
+        };
+        let listing = Listing::of(&project, Locale::English);
+        assert_eq!(
+            listing.meant("Timer"),
+            Meant::Block(ids("Timer")[0].clone())
+        );
+        let Meant::Block(begin) = listing.meant("twice") else {
+            panic!("{:?}", listing.meant("twice"));
+        };
+        assert!(ids("InitialNode").contains(&begin));
+        let Meant::Several(functions) = listing.meant("Function") else {
+            panic!("{:?}", listing.meant("Function"));
+        };
+        assert_eq!(functions.len(), 2);
+        let choices = listing.choices(&functions);
+        assert!(choices.contains(" (Function: n = 0)"), "{choices}");
+        assert!(choices.contains(" (Function: m = n * 2)"), "{choices}");
+        assert_eq!(listing.named("Function").map(|all| all.len()), Ok(2));
+        assert_eq!(listing.meant("Tmier"), Meant::Nothing);
+        assert_eq!(listing.near("Tmier").english, "; did you mean 'Timer'?");
+        // In the words of the text.
+        let russian = Listing::of(&project, Locale::Russian);
+        let shown = "\u{422}\u{430}\u{439}\u{43c}\u{435}\u{440}";
+        assert_eq!(russian.meant(shown), Meant::Block(ids("Timer")[0].clone()));
+    }
+
+    #[test]
+    fn a_subprogram_of_data_flow_begins_behind_its_inputs() {
+        let walls = include_str!("../../../examples/dataflow/walls.flow");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walls.flow");
+        std::fs::write(&path, walls).unwrap();
+        let listing = listing_of(&path, None, Locale::English).unwrap();
+        let begins = listing.named("Keep to the wall").unwrap();
+        assert!(!begins.is_empty());
+        assert!(begins.iter().all(|block| listing.has(block)));
     }
 }

@@ -113,8 +113,8 @@ fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale
             };
         }
         "error" => words::error(&harmless(&stop.text)),
+        "pause" | "oldest" if told.ms == 0 => words::first(),
         "oldest" => words::oldest(),
-        "pause" if told.ms == 0 => words::first(),
         reason => words::reason(&harmless(reason)),
     };
     in_locale(locale, words)

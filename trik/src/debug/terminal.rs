@@ -4,12 +4,14 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::asking::{Asked, Listener};
+use super::complete::Known;
+use super::lines::{Heard, Lines, PROMPT, Wanted};
 use super::listing::Listing;
 use super::report::{Report, State};
 use super::signals::{Pressed, interrupts, pressed};
 use super::stops::{self, words};
 use super::target::{Changed, Channel, Event, Target, Written, log_lines, why_not};
-use super::words::{ROWS, Typed, understand};
+use super::words::{NotUnderstood, ROWS, Typed, understand};
 use crate::diagrams::flow;
 use crate::diagrams::save::must;
 use crate::error::Error;
@@ -21,9 +23,10 @@ use lang_diagram::debug::order::Order;
 use lang_text::problem::{Locale, Words};
 use nix::sys::signalfd::SignalFd;
 use serde_json::Value;
-use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::cell::RefCell;
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 /// Lines of the diagram that are shown before and after one.
@@ -50,7 +53,9 @@ pub(crate) struct Terminal<'a> {
     /// Whether somebody reads prompts.
     is_interactive: bool,
     last: String,
-    lines: Receiver<String>,
+    lines: Lines,
+    /// What is to be shown above a command that is being typed, while it is put together.
+    above: RefCell<Option<String>>,
     /// A question of the program that is not answered.
     asked: Option<Asked>,
     /// Somebody wants this process to end.
@@ -68,7 +73,8 @@ impl<'a> Terminal<'a> {
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
             // Read once signals are: its thread must not have them.
-            lines: sync_channel(0).1,
+            lines: Lines::none(),
+            above: RefCell::new(None),
             asked: None,
             is_leaving: false,
         }
@@ -80,7 +86,7 @@ impl<'a> Terminal<'a> {
     /// The robot is gone, or nobody can hear.
     pub(crate) fn run(&mut self) -> Result<(), Error> {
         let keys = interrupts().map_err(|error| Error::system("signals", error))?;
-        self.lines = lines();
+        self.lines = Lines::begin(self.is_interactive);
         self.says(words::greeting())?;
         self.wait(&keys)?;
         while !self.is_leaving {
@@ -99,7 +105,7 @@ impl<'a> Terminal<'a> {
                 continue;
             }
             match understand(&self.last, &self.listing) {
-                Err(why) => self.say(&harmless(&why.in_locale(self.source.locale)))?,
+                Err(why) => self.refuse(&why)?,
                 Ok(Typed::Quit) => return Ok(()),
                 Ok(typed) => self.carry_out(&typed, &keys)?,
             }
@@ -107,9 +113,30 @@ impl<'a> Terminal<'a> {
         Ok(())
     }
 
+    /// Says why a line is not understood, and what may be meant by the name of a variable.
+    fn refuse(&mut self, why: &NotUnderstood) -> Result<(), Error> {
+        let mut said = why.in_locale(self.source.locale);
+        if let NotUnderstood::NoBlock { text, .. } = why {
+            self.look()?;
+            let mut variables = self.told.variables.iter();
+            if variables.any(|variable| variable.name == *text) {
+                said += words::is_variable(text).in_locale(self.source.locale);
+            }
+        }
+        self.say(&harmless(&said))
+    }
+
     fn say(&self, line: &str) -> Result<(), Error> {
+        self.write(&format!("{line}\n"))
+    }
+
+    fn write(&self, text: &str) -> Result<(), Error> {
+        if let Some(above) = &mut *self.above.borrow_mut() {
+            above.push_str(text);
+            return Ok(());
+        }
         let mut out = io::stdout().lock();
-        let said = writeln!(out, "{line}").and_then(|()| out.flush());
+        let said = out.write_all(text.as_bytes()).and_then(|()| out.flush());
         said.map_err(|error| Error::system("standard output", error))
     }
 
@@ -117,27 +144,40 @@ impl<'a> Terminal<'a> {
         self.say(words.in_locale(self.source.locale))
     }
 
-    fn prompt(&self) -> Result<(), Error> {
-        if !self.is_interactive {
-            return Ok(());
+    fn prompt(&mut self) -> Result<(), Error> {
+        let (told, listing) = (&self.told, &self.listing);
+        self.lines.know(|| Known {
+            places: listing.names(),
+            variables: told.variables.iter().map(|one| one.name.clone()).collect(),
+            threads: told.threads.iter().map(|one| one.name.clone()).collect(),
+        });
+        let is_shown = self.lines.ask(Wanted::Command);
+        match self.is_interactive && !is_shown {
+            true => self.write(PROMPT),
+            false => Ok(()),
         }
-        let mut out = io::stdout().lock();
-        let said = out.write_all(b"(trik) ").and_then(|()| out.flush());
-        said.map_err(|error| Error::system("standard output", error))
     }
 
     /// The next line; none at the end.
     fn line(&mut self, keys: &SignalFd) -> Result<Option<String>, Error> {
         loop {
-            match self.lines.recv_timeout(TURN) {
-                Ok(line) => return Ok(Some(line)),
+            match self.lines.next(TURN) {
+                Ok(Heard::Line(line)) => return Ok(Some(line)),
+                Ok(Heard::Interrupt) => {
+                    self.says(words::ends_by_quit())?;
+                    self.prompt()?;
+                }
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
                 Err(RecvTimeoutError::Timeout) => {
                     match pressed(keys) {
                         Some(Pressed::Leave) => return Ok(None),
                         Some(Pressed::Interrupt) if self.is_interactive => {
-                            self.says(words::ends_by_quit())?;
-                            self.prompt()?;
+                            let words = words::ends_by_quit();
+                            let text = format!("\n{}\n", words.in_locale(self.source.locale));
+                            if !self.lines.show_above(&text) {
+                                self.write(&text)?;
+                                self.prompt()?;
+                            }
                         }
                         // Nobody types who could be told.
                         Some(Pressed::Interrupt) => return Ok(None),
@@ -145,10 +185,21 @@ impl<'a> Terminal<'a> {
                     }
                     // A robot goes on living while a person thinks.
                     let events = self.target.turn(Duration::ZERO)?;
-                    self.hear(&events)?;
+                    self.hear_above(&events)?;
                 }
             }
         }
+    }
+
+    /// Hears while a command may be being typed.
+    fn hear_above(&mut self, events: &[Event]) -> Result<(), Error> {
+        self.above = RefCell::new(Some(String::new()));
+        let heard = self.hear(events);
+        let above = self.above.take().unwrap_or_default();
+        if !above.is_empty() && !self.lines.show_above(&above) {
+            self.write(&above)?;
+        }
+        heard
     }
 
     fn carry_out(&mut self, typed: &Typed, keys: &SignalFd) -> Result<(), Error> {
@@ -264,10 +315,7 @@ impl<'a> Terminal<'a> {
         let Some(asked) = self.asked.as_ref().filter(|_| self.is_interactive) else {
             return Ok(());
         };
-        let mut out = io::stdout().lock();
-        let shown = question(asked);
-        let said = out.write_all(shown.as_bytes()).and_then(|()| out.flush());
-        said.map_err(|error| Error::system("standard output", error))
+        self.write(&question(asked))
     }
 
     /// Passes the next line on to the program, if it asks.
@@ -279,10 +327,11 @@ impl<'a> Terminal<'a> {
         let Some(asked) = &self.asked else {
             return Ok(());
         };
-        let line = match self.lines.try_recv() {
-            Ok(line) => Some(line),
-            Err(TryRecvError::Empty) => return Ok(()),
-            Err(TryRecvError::Disconnected) => None,
+        self.lines.ask(Wanted::Answer);
+        let line = match self.lines.next(Duration::ZERO) {
+            Ok(Heard::Line(line)) => Some(line),
+            Ok(Heard::Interrupt) | Err(RecvTimeoutError::Timeout) => return Ok(()),
+            Err(RecvTimeoutError::Disconnected) => None,
         };
         if !self.is_interactive {
             let typed = line.as_deref().unwrap_or_default();
@@ -542,7 +591,7 @@ impl<'a> Terminal<'a> {
 
     fn help(&self) -> Result<(), Error> {
         for row in ROWS {
-            let head = format!("{} {}", row.words.replace(' ', ", "), row.more);
+            let head = row.form(self.source.locale);
             self.say(&format!("{head:42} {}", row.what(self.source.locale)))?;
         }
         self.says(words::last_of_help())
@@ -558,36 +607,4 @@ fn question(asked: &Asked) -> String {
 /// Lines of others, for a terminal.
 fn lines_of(text: &str) -> String {
     text.lines().map(harmless).collect::<Vec<_>>().join("\n")
-}
-
-/// Lines from standard input, read when there is room for them.
-fn lines() -> Receiver<String> {
-    let (sender, receiver) = sync_channel(1);
-    std::thread::spawn(move || {
-        let mut input = io::stdin().lock();
-        loop {
-            let mut line = Vec::new();
-            let limit = limits::DEBUG_LINE_BYTES as u64;
-            let read = (&mut input).take(limit).read_until(b'\n', &mut line);
-            match read {
-                Ok(0) | Err(_) => return,
-                Ok(_) => {}
-            }
-            if line.len() == limits::DEBUG_LINE_BYTES && !line.ends_with(b"\n") {
-                // What is left of it is no line of its own.
-                if input.skip_until(b'\n').is_err() {
-                    return;
-                }
-                line = b"(a line that is too long)".to_vec();
-            }
-            let line = String::from_utf8_lossy(&line);
-            if sender
-                .send(line.trim_end_matches(['\n', '\r']).to_owned())
-                .is_err()
-            {
-                return;
-            }
-        }
-    });
-    receiver
 }

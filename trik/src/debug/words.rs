@@ -2,7 +2,7 @@
 //!
 //! Owns the words, their short forms and their help. What an order does is known in `lang_diagram::debug`.
 
-use super::listing::Listing;
+use super::listing::{Listing, Meant};
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Breakpoint, Step};
 use lang_text::problem::{Locale, Words};
@@ -39,10 +39,15 @@ pub(super) enum NotUnderstood {
     Lacks(Lacking),
     /// Nothing can follow this command.
     Strange(String),
-    /// The diagram has no such line, or no block there and after it.
-    NoLine(String),
-    /// Nor has a data-flow program a block that is called so; the label that may be meant, as a sentence to append.
-    NoLabel(String, Words),
+    /// The program has no such line with a block at or after it, and no block that is meant so; the name that may be meant, as
+    /// a sentence to append.
+    NoBlock {
+        text: String,
+        is_flow: bool,
+        near: Words,
+    },
+    /// Several blocks are meant so; how each is said.
+    Ambiguous(String, String),
 }
 
 impl NotUnderstood {
@@ -61,25 +66,46 @@ impl NotUnderstood {
                 format!("nothing can follow this command, and here is '{text}'"),
                 format!("после этой команды ничего не пишут, а здесь '{text}'"),
             ),
-            Self::NoLine(text) => Words::new(
+            Self::NoBlock {
+                text,
+                is_flow: false,
+                near,
+            } => Words::new(
                 format!(
-                    "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
-                ),
-                format!("'{text}' - не строка с блоком и не id блока; строки показывает list"),
-            ),
-            Self::NoLabel(text, near) => Words::new(
-                format!(
-                    "'{text}' is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id; list shows lines and labels{}",
+                    "'{text}' is neither a line that has a block, nor the caption or the id of a block, nor a subprogram; list shows the lines{}",
                     near.english
                 ),
                 format!(
-                    "'{text}' - не строка с блоком, не метка блока, не ПОДПРОГРАММА/МЕТКА и не id блока; строки и метки показывает list{}",
+                    "'{text}' - не строка с блоком, не надпись и не id блока, не подпрограмма; строки показывает list{}",
                     near.russian
                 ),
             ),
+            Self::NoBlock {
+                text,
+                is_flow: true,
+                near,
+            } => Words::new(
+                format!(
+                    "'{text}' is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id, nor a subprogram; list shows lines and labels{}",
+                    near.english
+                ),
+                format!(
+                    "'{text}' - не строка с блоком, не метка блока, не ПОДПРОГРАММА/МЕТКА, не id блока и не подпрограмма; строки и метки показывает list{}",
+                    near.russian
+                ),
+            ),
+            Self::Ambiguous(text, choices) => ambiguous(text, choices),
         };
         words.in_locale(locale).to_owned()
     }
+}
+
+/// A text means several blocks, and how each of them is said.
+pub(crate) fn ambiguous(text: &str, choices: &str) -> Words {
+    Words::new(
+        format!("'{text}' means several blocks; give the line of one: {choices}"),
+        format!("'{text}' - это несколько блоков; назовите строку одного: {choices}"),
+    )
 }
 
 /// What a command lacks.
@@ -127,7 +153,7 @@ impl Lacking {
             Self::Line => "строка",
             Self::LineText => "текст после номера строки",
             Self::Variable => "имя переменной",
-            Self::Assignment => "NAME=EXPRESSION",
+            Self::Assignment => "ИМЯ=ВЫРАЖЕНИЕ",
             Self::Expression => "выражение",
             Self::Number => "номер точки останова",
             Self::StopOrGo => "stop или go",
@@ -141,13 +167,44 @@ impl Lacking {
 /// A command: its words, what follows them, and what it does in English and Russian.
 pub(super) struct Row {
     /// The first one is the long one.
-    pub words: &'static str,
-    pub more: &'static str,
+    words: &'static str,
+    more: &'static str,
     english: &'static str,
     russian: &'static str,
 }
 
+/// Words that stand for what is typed in their place, in English and Russian.
+const STAND_INS: [[&str; 2]; 7] = [
+    ["LINE", "СТРОКА"],
+    ["TEXT", "ТЕКСТ"],
+    ["EXPRESSION", "ВЫРАЖЕНИЕ"],
+    ["THREAD", "ПОТОК"],
+    ["NAME", "ИМЯ"],
+    ["NUMBER", "НОМЕР"],
+    ["MS", "МС"],
+];
+
+/// A form of a command in the language of a person.
+fn form(english: &str, locale: Locale) -> String {
+    let mut form = english.to_owned();
+    match locale {
+        Locale::English => {}
+        Locale::Russian => {
+            for [word, russian] in STAND_INS {
+                form = form.replace(word, russian);
+            }
+        }
+    }
+    form
+}
+
 impl Row {
+    /// Its words, and what follows them.
+    pub(super) fn form(&self, locale: Locale) -> String {
+        let words = self.words.replace(' ', ", ");
+        format!("{words} {}", form(self.more, locale))
+    }
+
     /// What it does.
     pub(super) fn what(&self, locale: Locale) -> &'static str {
         match locale {
@@ -238,8 +295,8 @@ pub(super) const ROWS: [Row; 28] = [
     row(
         "break b",
         "LINE [if EXPRESSION]",
-        "stop before a line; LINE may be the id of a block, or its label in a data-flow program",
-        "остановка перед строкой; вместо строки можно написать id блока, а в потоковой программе - метку",
+        "stop before a line; LINE may be a block by its id, its caption (in a data-flow program its label), or a subprogram",
+        "остановка перед строкой; вместо строки можно написать id блока, его надпись (в потоковой программе метку) или подпрограмму",
     ),
     row(
         "tbreak tb",
@@ -257,7 +314,7 @@ pub(super) const ROWS: [Row; 28] = [
         "dprintf",
         "LINE TEXT",
         "write a line there; {EXPRESSION} in it is a value",
-        "писать там строку; {EXPRESSION} в ней - значение",
+        "писать там строку; {ВЫРАЖЕНИЕ} в ней - значение",
     ),
     row(
         "delete d",
@@ -269,7 +326,7 @@ pub(super) const ROWS: [Row; 28] = [
         "disable",
         "NUMBER",
         "let a breakpoint do nothing; enable NUMBER undoes it",
-        "выключить точку останова; enable NUMBER включает",
+        "выключить точку останова; enable НОМЕР включает",
     ),
     row(
         "errors",
@@ -305,7 +362,7 @@ pub(super) const ROWS: [Row; 28] = [
         "hold",
         "THREAD",
         "hold a thread at its next block and let the others go on; release THREAD undoes it",
-        "задержать поток у следующего блока, остальные идут дальше; release THREAD отпускает",
+        "задержать поток у следующего блока, остальные идут дальше; release ПОТОК отпускает",
     ),
     row(
         "reload",
@@ -332,6 +389,17 @@ pub(super) const ROWS: [Row; 28] = [
         "закончить; программа заканчивается тоже, а та, к которой подключились с --attach, идёт дальше",
     ),
 ];
+
+/// Commands that are in the help of another one.
+const BESIDE: [&str; 4] = ["backtrace", "enable", "help", "release"];
+
+/// All commands by their long words.
+pub(super) fn commands() -> impl Iterator<Item = &'static str> {
+    let rows = ROWS
+        .iter()
+        .map(|row| row.words.split(' ').next().unwrap_or_default());
+    rows.chain(BESIDE)
+}
 
 /// Commands after which nothing comes.
 const ALONE: &str = "continue c run r pause reverse-next rn reverse-step rs reverse-finish rf reverse-continue rc start \
@@ -452,12 +520,29 @@ fn number(text: &str) -> Result<u32, NotUnderstood> {
     text.parse().map_err(|_| lacks)
 }
 
+/// The block that is meant by its name.
+fn block_named(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
+    match listing.meant(text) {
+        Meant::Block(block) => Ok(block),
+        Meant::Nothing => Err(no_block(text, listing)),
+        Meant::Several(blocks) => {
+            let choices = listing.choices(&blocks);
+            Err(NotUnderstood::Ambiguous(shortened(text), choices))
+        }
+    }
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(80).collect()
+}
+
 /// Why nothing is meant by a text that should mean a block.
 fn no_block(text: &str, listing: &Listing) -> NotUnderstood {
-    let text: String = text.chars().take(80).collect();
-    match listing.near_label(&text) {
-        Some(near) => NotUnderstood::NoLabel(text, near),
-        None => NotUnderstood::NoLine(text),
+    let text = shortened(text);
+    NotUnderstood::NoBlock {
+        is_flow: listing.is_flow(),
+        near: listing.near(&text),
+        text,
     }
 }
 
@@ -465,25 +550,22 @@ fn no_block(text: &str, listing: &Listing) -> NotUnderstood {
 fn line_of(text: &str, listing: &Listing) -> Result<usize, NotUnderstood> {
     match text.parse() {
         Ok(line) => Ok(line),
-        Err(_) => {
-            let block = listing.id_of(text).ok_or_else(|| no_block(text, listing))?;
-            Ok(listing.line_of(block))
-        }
+        Err(_) => Ok(listing.line_of(&block_named(text, listing)?)),
     }
 }
 
-/// The block that a line, a label or an id means. A line without a block means the next one that has one.
+/// The block that a line or a name means. A line without a block means the next one that has one.
 fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
     if text.is_empty() {
         return Err(NotUnderstood::Lacks(Lacking::Line));
     }
-    let none = || no_block(text, listing);
     match text.parse::<usize>() {
         Ok(line) => {
+            let none = || no_block(text, listing);
             let line = listing.line_with_block(line).ok_or_else(none)?;
             listing.blocks(line).first().cloned().ok_or_else(none)
         }
-        Err(_) => listing.id_of(text).map(Into::into).ok_or_else(none),
+        Err(_) => block_named(text, listing),
     }
 }
 
@@ -492,7 +574,12 @@ fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood
     let (place, rest) = match text.find(" if ") {
         Some(at) => text.split_at(at),
         None => match text.split_once(char::is_whitespace) {
-            Some((place, rest)) if block(place, listing).is_ok() => (place, rest),
+            // The first word of a longer name may be a name too.
+            Some((place, rest))
+                if listing.meant(text) == Meant::Nothing && block(place, listing).is_ok() =>
+            {
+                (place, rest)
+            }
             Some(_) | None => (text, ""),
         },
     };

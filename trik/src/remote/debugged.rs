@@ -7,6 +7,7 @@ use super::link::{Link, Message, ms};
 use super::relay::Relay;
 use super::upload::Upload;
 use crate::debug::asking::{Asked, Listener};
+use crate::debug::report::Report;
 use crate::debug::target::words;
 use crate::debug::target::{Changed, Channel, Event, Target, Written, why_not};
 use crate::error::Error;
@@ -15,7 +16,7 @@ use lang_diagram::debug::order::Order;
 use lang_text::problem::{Locale, Words};
 use serde_json::Value;
 use std::collections::VecDeque;
-use std::net::TcpStream;
+use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::time::{Duration, Instant};
 use trikd::protocol::news;
@@ -123,6 +124,21 @@ impl Debugged {
         Ok(debugged)
     }
 
+    /// Names of the variables of the program of blocks that runs on a robot; it is only looked at.
+    ///
+    /// # Errors
+    /// A sentence: the robot cannot be reached, or no such program runs there.
+    pub(crate) fn variables(
+        at: &super::target::Target,
+        locale: Locale,
+    ) -> Result<Vec<String>, Error> {
+        let mut debugged = Self::over(at.connect()?, Begun::Elsewhere, locale);
+        let seen = debugged.must(&Order::Look.to_string())?;
+        let told = seen.get("program").and_then(Report::read);
+        let variables = told.unwrap_or_default().variables;
+        Ok(variables.into_iter().map(|one| one.name).collect())
+    }
+
     /// Sends a program in Python to a robot, where it waits for its debugger; also gives the folder that it is in there.
     ///
     /// # Errors
@@ -226,7 +242,11 @@ impl Debugged {
         let answer = self.ask(text)?;
         match why_not(&answer) {
             None => Ok(answer),
-            Some(why) => Err(Error::Robot(format!("{}: {why}", self.link.name()))),
+            Some(why) => Err(Error::Robot(match is_about_holder(&why, self.locale) {
+                // It has an address already.
+                true => why,
+                false => format!("{}: {why}", self.link.name()),
+            })),
         }
     }
 
@@ -376,6 +396,13 @@ impl Debugged {
     }
 }
 
+/// Whether a refusal says who is in control, in this language.
+fn is_about_holder(why: &str, locale: Locale) -> bool {
+    let mut words = why.split(' ');
+    let holder = words.find(|word| word.parse::<SocketAddr>().is_ok());
+    holder.is_some_and(|holder| words::is(why, &news::in_control(holder), locale))
+}
+
 impl Target for Debugged {
     fn order(&mut self, order: &Order) -> Result<Value, Error> {
         let answer = self.ask(&order.to_string())?;
@@ -479,6 +506,23 @@ impl Target for Debugged {
             Begun::Elsewhere => {
                 let _ = self.ask(&Order::Detach.to_string());
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_in_control_is_known_by_the_sentence_in_both_languages() {
+        let why = news::in_control("127.0.0.1:33016");
+        let russian = words::told(&why, Locale::Russian);
+        assert_ne!(why, russian);
+        assert!(is_about_holder(&why, Locale::English));
+        assert!(is_about_holder(&russian, Locale::Russian));
+        for other in [news::NO_DIAGRAM, "127.0.0.1:33016 is away", ""] {
+            assert!(!is_about_holder(other, Locale::English), "{other}");
         }
     }
 }

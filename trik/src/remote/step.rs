@@ -6,11 +6,13 @@
 use super::debugged::{Debugged, Runs};
 use super::output::say;
 use super::target::{Target, target, the_one};
-use crate::debug::listing::{Listing, listing_of};
+use super::watch::patience;
+use crate::debug::listing::{Listing, Meant, listing_of};
 use crate::debug::report::{Report, State};
 use crate::debug::stops;
 use crate::debug::target::words;
 use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
+use crate::debug::words::ambiguous;
 use crate::error::Error;
 use crate::language;
 use crate::output::standard;
@@ -41,8 +43,8 @@ pub(crate) struct WhereArgs {
     #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
     /// Give up after this many seconds; the program goes on then [default: wait].
-    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
-    pub seconds: Option<u32>,
+    #[arg(long, value_name = "SECONDS", value_parser = patience)]
+    pub seconds: Option<Duration>,
     /// Language of sentences: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
@@ -51,7 +53,8 @@ pub(crate) struct WhereArgs {
 /// What `trik break` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct BreakArgs {
-    /// A line of the text of --file, the id of a block, its label in a data-flow program, or the name of a variable that is to change (with --change).
+    /// A line of the text of --file; a block by its id, and with --file by its caption, its label in a data-flow program or
+    /// the subprogram that begins with it; or the name of a variable that is to change (with --change).
     pub place: String,
     /// Stop only if this expression is true.
     #[arg(long = "if", value_name = "EXPRESSION")]
@@ -117,7 +120,10 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
     }
     let point = match args.change {
         true => Breakpoint::of_changes(args.place.trim()),
-        false => Breakpoint::before(block(&args.place, listing.as_ref(), args.at.language)?),
+        false => {
+            let block = block(&args.place, listing.as_ref(), args.at.language);
+            Breakpoint::before(block.map_err(|why| with_variable(why, args))?)
+        }
     };
     let point = Breakpoint {
         is_once: true,
@@ -218,7 +224,7 @@ fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
     listing.transpose()
 }
 
-/// The block of a line, a label or an id.
+/// The block of a line or a name.
 fn block(place: &str, listing: Option<&Listing>, locale: Locale) -> Result<Box<str>, Refusal> {
     let place = place.trim();
     let none = |why: Words| Refusal {
@@ -232,17 +238,36 @@ fn block(place: &str, listing: Option<&Listing>, locale: Locale) -> Result<Box<s
             block.ok_or_else(|| none(words::no_such_line()))
         }
         (Ok(_), None) => Err(none(words::lines_need_file())),
-        (Err(_), Some(listing)) => {
-            let id = listing.id_of(place).map(Into::into);
-            id.ok_or_else(|| {
-                let near = listing.near_label(place);
-                none(words::no_such_block(near))
-            })
-        }
+        (Err(_), Some(listing)) => match listing.meant(place) {
+            Meant::Block(block) => Ok(block),
+            Meant::Nothing => Err(none(words::no_such_block(&listing.near(place)))),
+            Meant::Several(blocks) => {
+                let why = ambiguous(&harmless(place), &listing.choices(&blocks));
+                Err(Refusal {
+                    code: UNREADABLE,
+                    ..Refusal::new(why.in_locale(locale).to_owned())
+                })
+            }
+        },
         // An id has a slash or a brace; the robot knows no others.
         (Err(_), None) if !place.contains(['/', '{']) => Err(none(words::lines_need_file())),
         (Err(_), None) => Ok(place.into()),
     }
+}
+
+/// A refusal of a place, with what the person may have meant if the program has a variable of that name.
+fn with_variable(mut why: Refusal, args: &BreakArgs) -> Refusal {
+    let (name, locale) = (args.place.trim(), args.at.language);
+    let variables = match &args.at.robot {
+        Some(robot) => Debugged::variables(robot, locale),
+        None => the_one().and_then(|robot| Debugged::variables(&robot, locale)),
+    };
+    // A robot that does not answer has nothing to add.
+    let is_one = variables.is_ok_and(|names| names.iter().any(|one| one == name));
+    if let (true, Some(last)) = (is_one, why.lines.last_mut()) {
+        last.push_str(words::is_variable(&harmless(name)).in_locale(locale));
+    }
+    why
 }
 
 /// Waits until the program is stopped, says where, and leaves it so.
@@ -251,9 +276,7 @@ fn finish(
     talked: Result<Reply, Error>,
     (at, listing): (&WhereArgs, Option<&Listing>),
 ) -> Result<u8, Refusal> {
-    let until = at
-        .seconds
-        .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
+    let until = at.seconds.map(|seconds| Instant::now() + seconds);
     let mut told = match talked.map_err(|error| unreachable(error, at.language))? {
         Reply::State(told) => *told,
         Reply::Done => Report::default(),

@@ -17,9 +17,11 @@ use crate::limits;
 use crate::refusal::{Refusal, UNREADABLE};
 use clap::Args;
 use lang_text::problem::Locale;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io::{self, IsTerminal, Write};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use trikd::protocol::news;
@@ -42,14 +44,25 @@ pub(crate) struct WatchArgs {
     #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
     /// End after this many seconds [default: with the program].
-    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
-    pub seconds: Option<u32>,
+    #[arg(long, value_name = "SECONDS", value_parser = patience)]
+    pub seconds: Option<Duration>,
     /// Language of sentences: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
 }
 
-/// Watches until the program has ended. The exit code: 0 it has ended, or the time is over, 1 no diagram runs, 2 the robot
+/// How long somebody waits: `0.3`, in seconds.
+///
+/// # Errors
+/// It is no time from 0.01 to 86400 s.
+pub(super) fn patience(text: &str) -> Result<Duration, Error> {
+    let seconds = text.trim().parse::<f64>().ok();
+    let seconds = seconds.filter(|seconds| (0.01..=86_400.0).contains(seconds));
+    let wanted = || Error::Refused("a number of seconds from 0.01 to 86400 is wanted".to_owned());
+    seconds.map(Duration::from_secs_f64).ok_or_else(wanted)
+}
+
+/// Watches until the program has ended. The exit code: 0 it has ended, the time is over, or nobody reads any more, 1 no diagram runs, 2 the robot
 /// could not be reached.
 ///
 /// # Errors
@@ -75,9 +88,7 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
     };
     let mut link = target.connect()?;
     link.speak(args.language);
-    let until = args
-        .seconds
-        .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
+    let until = args.seconds.map(|seconds| Instant::now() + seconds);
     let mut picture = Picture::new(listing, io::stdout().is_terminal(), args.language);
     let mut has_seen = false;
     for tag in 1u64.. {
@@ -92,15 +103,20 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         }
         if let Some(told) = answer.get("program").and_then(Report::read) {
             has_seen = true;
-            picture
-                .show(&told)
-                .map_err(|error| Error::system("standard output", error))?;
+            match picture.show(&told) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => break,
+                shown => shown.map_err(|error| Error::system("standard output", error))?,
+            }
+        }
+        if is_unread(io::stdout().as_fd()) {
+            break;
         }
         // However short the time is, there is one look.
         if until.is_some_and(|until| Instant::now() >= until) {
             break;
         }
         let next = Instant::now() + PAUSE;
+        let next = until.map_or(next, |until| next.min(until));
         while Instant::now() < next {
             while let Some(message) = link.next() {
                 note_control(&message, &mut picture.control);
@@ -109,6 +125,14 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
         }
     }
     Ok(0)
+}
+
+/// Whether nobody reads any more what is written there: the other end of a pipe is closed.
+fn is_unread(output: BorrowedFd<'_>) -> bool {
+    let mut output = [PollFd::new(output, PollFlags::empty())];
+    let polled = poll(&mut output, PollTimeout::ZERO);
+    let events = output[0].revents().unwrap_or(PollFlags::empty());
+    polled.is_ok() && events.contains(PollFlags::POLLERR)
 }
 
 /// Hears who is in control of the debugger: an address, or nobody.
@@ -308,6 +332,25 @@ impl<'a> Picture<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn short_times_are_times_and_others_are_refused_in_words() {
+        for (text, ms) in [("0.3", 300), ("0.01", 10), ("2", 2000)] {
+            assert_eq!(patience(text), Ok(Duration::from_millis(ms)));
+        }
+        for text in ["0", "-1", "NaN", "inf", "1e9", "soon", ""] {
+            let why = patience(text).unwrap_err().to_string();
+            assert!(why.contains("from 0.01 to 86400"), "{text}: {why}");
+        }
+    }
+
+    #[test]
+    fn a_pipe_whose_other_end_is_closed_is_not_read() {
+        let (reader, writer) = io::pipe().unwrap();
+        assert!(!is_unread(writer.as_fd()));
+        drop(reader);
+        assert!(is_unread(writer.as_fd()));
+    }
 
     #[test]
     fn threads_that_are_held_are_shown() {

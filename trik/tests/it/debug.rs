@@ -16,6 +16,8 @@ mod python_again;
 mod restart;
 /// Programs in JavaScript.
 mod script;
+/// Lines that a person edits.
+mod typed;
 /// Who debugs, for others, and in which language they hear of it.
 mod who;
 
@@ -169,6 +171,27 @@ fn all_breakpoints_are_listed() {
 }
 
 #[test]
+fn a_block_is_named_by_its_caption_and_a_subprogram_by_its_name() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "break twice\nbreak Timer if n > 3\nbreak Function\nbreak Tmier\nlist twice\nc\nbreak n\nd 1\nc\np n\nq\n";
+    let told = debug(&board, &["debug", "count.qrs"], typed).good();
+    for line in [
+        "(trik) break twice\nbreakpoint 1 at line 9: ",
+        "(trik) break Timer if n > 3\nbreakpoint 2 at line 6: Timer: 100\n",
+        "(trik) break Function\n'Function' means several blocks; give the line of one: ",
+        ", 4 (Function: n = n + 1; print(n))",
+        "nor a subprogram; list shows the lines; did you mean 'Timer'?\n",
+        "thread main: breakpoint 1\n>   9 ",
+        "; n is a variable: watch n stops after it changes\n",
+        "thread main: breakpoint 2\n>   6 ",
+        "(trik) p n\n4\n",
+    ] {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+}
+
+#[test]
 fn a_file_is_taken_again_and_the_program_goes_on() {
     let board = Board::new();
     board.file("count.qrs", counting());
@@ -232,8 +255,30 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
     let said = trik(&["break", "n", "--change"]).good();
     assert!(said.contains(": n was "), "{said}");
     for (words, why) in [
-        (&["break", "5"][..], "lines and labels are those of --file"),
-        (&["break", "drive"], "lines and labels are those of --file"),
+        (
+            &["break", "5"][..],
+            "lines, labels and captions are those of --file",
+        ),
+        (
+            &["break", "drive"],
+            "lines, labels and captions are those of --file",
+        ),
+        (
+            &["break", "n"],
+            "of --file FILE; n is a variable: trik break n --change stops when it has changed\n",
+        ),
+        (
+            &["break", "n", "--file", &file],
+            "no such block; n is a variable: trik break n --change stops",
+        ),
+        (
+            &["break", "Tmier", "--file", &file],
+            "no such block; did you mean 'Timer'?\n",
+        ),
+        (
+            &["break", "Function", "--file", &file],
+            "'Function' means several blocks; give the line of one: 2 (Function: n = 0), 5 (Function: n = n + 1)\n",
+        ),
         (&["break", "99", "--file", &file], "no such line"),
         (&["break", "{nobody}"], "the program has no such block"),
         (
@@ -260,7 +305,7 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
         "--file",
         &file,
         "--seconds",
-        "1",
+        "0.3",
     ]);
     assert_eq!(waited.code(), 1, "{}", waited.stdout);
     eventually("a robot that goes on", drives);

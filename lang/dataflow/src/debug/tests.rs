@@ -241,6 +241,11 @@ fn a_variable_that_is_set_counts_at_the_next_reaction() {
     runs(&mut desk, &mut robot, 30, 40);
     assert_eq!(last(&robot), "power M3 15");
     assert!(told(&mut desk, "set k='far'").contains("\"done\":false"));
+    let refused = told(&mut desk, "set kk=1");
+    assert!(
+        refused.contains("no variable 'kk' with a value; it has: k"),
+        "{refused}"
+    );
 }
 
 /// Ten numbers, one each 10 ms.

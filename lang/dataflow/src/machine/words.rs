@@ -278,14 +278,19 @@ pub(crate) fn assigns_aside() -> Words {
 
 pub(crate) fn no_variable(name: &str, known: &[&str]) -> Words {
     let near = near::did_you_mean(name, known.iter().copied());
+    let there = list(known.iter().copied());
+    let (english, russian) = match known {
+        [] => (String::new(), String::new()),
+        [..] => (format!("; it has: {there}"), format!("; есть: {there}")),
+    };
     Words::new(
         format!(
-            "the program has no variable '{}' with a value{}",
+            "the program has no variable '{}' with a value{english}{}",
             short(name),
             near.english
         ),
         format!(
-            "в программе нет переменной '{}' со значением{}",
+            "в программе нет переменной '{}' со значением{russian}{}",
             short(name),
             near.russian
         ),

@@ -112,7 +112,7 @@ impl<M: Again> Hindsight<M> {
             Back::Continue | Back::Oldest => None,
         };
         let here = self.here(present);
-        if here.at <= history.first() {
+        if past::is_oldest(history, &here) {
             return Err(NoBack::AtOldest);
         }
         if how == Back::Oldest {

@@ -145,6 +145,14 @@ impl<M: Again> History<M> {
         self.segments.front().map_or(0, |segment| segment.first)
     }
 
+    /// The program at the first moment that is kept, at which it could have been stopped: before its first block is entered,
+    /// and before the time that passes until then.
+    pub(super) fn beginning(&self) -> Option<M> {
+        let (mut rerun, segment) = (self.rerun_of(0)?, self.segments.front()?);
+        let is_held = self.run_on(segment, &mut rerun, self.until(0), &mut |_, _, _| true);
+        is_held.then_some(rerun.machine)
+    }
+
     /// When the first moment is that is kept, in milliseconds of the program; none if nothing is.
     pub(super) fn first_ms(&self) -> Option<u32> {
         self.segments.front().map(|segment| segment.start.ms())

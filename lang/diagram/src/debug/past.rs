@@ -82,8 +82,20 @@ pub(super) fn at_time<M: Again>(history: &History<M>, ms: u32) -> Option<Past<M>
 
 /// The first moment that is kept.
 pub(super) fn oldest<M: Again>(history: &History<M>) -> Option<Past<M>> {
-    let at = history.first();
-    Some(Past::new(history.at(at)?, at, Reason::Oldest))
+    Some(Past::new(
+        history.beginning()?,
+        history.first(),
+        Reason::Oldest,
+    ))
+}
+
+/// Whether somebody stands at the first moment that is kept, or nothing is.
+pub(super) fn is_oldest<M: Again>(history: &History<M>, here: &From<'_, M>) -> bool {
+    let is_later = oldest(history).is_some_and(|oldest| {
+        let is_at_block = here.thread.is_some() && M::thread_of(&oldest.stop).is_none();
+        is_at_block || here.machine.ms() > oldest.machine.ms()
+    });
+    here.at <= history.first() && !is_later
 }
 
 /// In which direction a search goes.

@@ -17,14 +17,14 @@ pub(crate) fn greeting() -> Words {
 }
 
 pub(crate) fn ends_by_quit() -> Words {
-    Words::new("\ntype quit to end", "\nчтобы закончить, введите quit")
+    Words::new("type quit to end", "чтобы закончить, введите quit")
 }
 
 /// Of a question, by its words or the variable that is asked for.
 pub(crate) fn nobody_answers(what: &str) -> Words {
     Words::new(
         format!("{what} is asked for, and nobody is there to answer: --inputs FILE has answers"),
-        format!("запрошено значение {what}, а ответить некому: ответы можно дать в --inputs FILE"),
+        format!("запрошено значение {what}, а ответить некому: ответы можно дать в --inputs ФАЙЛ"),
     )
 }
 
@@ -33,6 +33,14 @@ pub(crate) fn answers_end() -> Words {
     Words::new(
         "nobody is there to answer any more: what a question proposes counts, or there is no answer",
         "отвечать больше некому: действует то, что предлагает вопрос, или ответа нет",
+    )
+}
+
+/// After a refusal of a place that is the name of a variable.
+pub(crate) fn is_variable(name: &str) -> Words {
+    Words::new(
+        format!("; {name} is a variable: watch {name} stops after it changes"),
+        format!("; {name} - переменная: watch {name} остановит, когда она изменится"),
     )
 }
 

@@ -281,18 +281,24 @@ pub(crate) fn empty_condition() -> Words {
 
 pub(crate) fn lines_need_file() -> Words {
     Words::new(
-        "lines and labels are those of --file FILE",
-        "строки и метки - из --file FILE",
+        "lines, labels and captions are those of --file FILE",
+        "строки, метки и надписи - из --file ФАЙЛ",
     )
 }
 
-/// With the label that may be meant.
-pub(crate) fn no_such_block(near: Option<Words>) -> Words {
-    let (english, russian) =
-        near.map_or_else(Default::default, |near| (near.english, near.russian));
+/// With the name that may be meant.
+pub(crate) fn no_such_block(near: &Words) -> Words {
     Words::new(
-        format!("the program has no such block{english}"),
-        format!("в программе нет такого блока{russian}"),
+        format!("the program has no such block{}", near.english),
+        format!("в программе нет такого блока{}", near.russian),
+    )
+}
+
+/// After a refusal of a place that is the name of a variable.
+pub(crate) fn is_variable(name: &str) -> Words {
+    Words::new(
+        format!("; {name} is a variable: trik break {name} --change stops when it has changed"),
+        format!("; {name} - переменная: trik break {name} --change остановит, когда она изменится"),
     )
 }
 

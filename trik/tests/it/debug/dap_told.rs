@@ -77,6 +77,41 @@ fn a_question_that_no_editor_shows_is_told() {
 }
 
 #[test]
+fn a_breakpoint_by_name_takes_what_a_person_sees() {
+    let board = board();
+    let walls = include_str!("../../../../examples/dataflow/walls.flow");
+    board.file("walls.flow", walls);
+    let set = |file: &str, names: &[&str]| {
+        let mut editor = Editor::start();
+        editor.launch_file(&board, file, json!({"stopOnEntry": true}));
+        let names: Vec<Value> = names.iter().map(|name| json!({"name": name})).collect();
+        let set = editor.good("setFunctionBreakpoints", json!({"breakpoints": names}));
+        editor.end();
+        set["breakpoints"].clone()
+    };
+    let told = set("count.qrs", &["Timer", "Initial Node", "Tmier"]);
+    assert_eq!(told[0]["verified"], true, "{told}");
+    let why = told[1]["message"].as_str().expect("why");
+    let which = "'Initial Node' means several blocks; give the line of one: 1 (";
+    assert!(why.starts_with(which), "{told}");
+    let near = "there is no subprogram and no block of this name; did you mean 'Timer'?";
+    assert_eq!(told[2]["message"], near, "{told}");
+    let names = ["Turn away", "Keep to the wall/turn", "turn", "trun"];
+    let told = set("walls.flow", &names);
+    for at in 0..3 {
+        assert_eq!(told[at]["verified"], true, "{told}");
+    }
+    assert_eq!(told[1]["line"], told[2]["line"], "{told}");
+    assert_ne!(told[0]["line"], told[1]["line"], "{told}");
+    assert!(
+        told[3]["message"]
+            .as_str()
+            .expect("why")
+            .ends_with("mean 'turn'?")
+    );
+}
+
+#[test]
 fn breakpoints_that_mean_nothing_are_not_set() {
     let board = board();
     let mut editor = Editor::start();

@@ -16,7 +16,7 @@ diagram \"Counter\"
   sum.O0 -> wheels.M3
 ";
 
-fn board() -> Board {
+pub(super) fn board() -> Board {
     let board = Board::new();
     board.file("count.flow", COUNTER);
     board
@@ -64,7 +64,7 @@ fn the_past_of_a_data_flow_program_is_looked_at_and_stays_when_it_has_ended() {
         "(trik) rs\npast, 0.90 s: step\n>   7   wheels - Motors\n      wheels.M3 gets 18\n(trik) p sum\n18\n",
         "(trik) p sum\n8\n(trik) set gain=5\na debugger looks at the past: come back to the present first, by `present` or by going on\n",
         "(trik) n\npast, 0.50 s: step\n>   4   sum",
-        "nothing before this is kept\n",
+        "(trik) start\npast, 0.00 s: before the first block\n",
         "(trik) c\n2.50 s: breakpoint 2\n",
         "the program has ended at 4.00 s of model time\n",
         "(trik) rn\npast, 4.00 s: step\n",
@@ -79,8 +79,8 @@ fn what_means_no_block_is_told_with_all_that_may_be_given_and_the_nearest_label(
     let board = board();
     let typed = "break whels\nbreak 99\nuntil gian\nlist weels\nlist wheels\nq\n";
     let told = debug(&board, &["debug", "count.flow"], typed).good();
-    let may = "is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id; \
-        list shows lines and labels";
+    let may = "is neither a line that has a block, nor the label of a block, its SUBPROGRAM/LABEL or its id, nor a \
+        subprogram; list shows lines and labels";
     for line in [
         format!("(trik) break whels\n'whels' {may}; did you mean 'wheels'?\n"),
         format!("(trik) break 99\n'99' {may}\n"),

@@ -70,7 +70,11 @@ fn is_between(session: &Session, moments: &[Seen]) -> bool {
     let last = moments.iter().rfind(|one| one.ms <= seen.ms);
     // A block may assign in its wait, and the last one of a step after it was entered.
     let is_like = |one: Option<&Seen>| one.is_none_or(|one| one.values == seen.values);
-    is_like(next) || is_like(last) || next.is_some_and(|next| next.ms > seen.ms + STEP_MS)
+    let is_beginning = seen.ms == 0 && is_like(moments.first());
+    is_beginning
+        || is_like(next)
+        || is_like(last)
+        || next.is_some_and(|next| next.ms > seen.ms + STEP_MS)
 }
 
 #[test]
@@ -113,7 +117,8 @@ fn every_moment_of_the_past_is_the_one_that_was() {
                         _ => Back::Step(Step::Into),
                     };
                     match session.back(how) {
-                        Ok(_) if matches!(how, Back::To(_)) => {
+                        // The beginning is between two steps too.
+                        Ok(stop) if matches!(how, Back::To(_)) || stop.thread.is_none() => {
                             looked += 1;
                             assert!(is_between(&session, &moments), "{told}");
                         }
@@ -200,8 +205,13 @@ fn it_runs_back_to_a_breakpoint_to_a_time_and_to_the_beginning() {
         desk.session.back(Back::Continue).unwrap().reason,
         Reason::Oldest
     );
-    // The first block of a simulated program is entered after a turn.
+    // The first block of a simulated program is entered after a turn, and the beginning is before that.
+    assert_eq!(desk.session.machine().now(), 0);
+    assert_eq!(desk.session.back(Back::Oldest), Err(NoBack::AtOldest));
+    assert!(desk.session.forth(Some(Step::Into)));
     assert_eq!(desk.session.machine().now(), 30);
+    desk.session.back(Back::Oldest).unwrap();
+    assert_eq!(desk.session.machine().now(), 0);
     assert_eq!(desk.session.back(Back::Continue), Err(NoBack::AtOldest));
     assert!(desk.session.forth(None));
     assert_eq!(desk.session.machine().now(), ms);
