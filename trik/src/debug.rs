@@ -15,7 +15,7 @@ pub(crate) mod stage;
 pub(crate) mod stops;
 pub(crate) mod target;
 mod terminal;
-pub(crate) mod words;
+mod words;
 
 use crate::check::{CheckArgs, NO_BLOCKS, Ready, Staged, Start, model_seconds, staged};
 use crate::error::Error;

@@ -28,6 +28,11 @@ pub(crate) fn harmless(text: &str) -> String {
     shown
 }
 
+/// The same of each line of a text.
+pub(crate) fn harmless_lines(text: &str) -> String {
+    text.lines().map(harmless).collect::<Vec<_>>().join("\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

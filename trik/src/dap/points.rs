@@ -3,8 +3,8 @@
 //! Owns which of them are set. A client always says all of one kind; what it does not say any more is taken away.
 
 use crate::debug::listing::Listing;
+use crate::debug::target::words::ambiguous;
 use crate::debug::target::{Target, why_not};
-use crate::debug::words::ambiguous;
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Breakpoint, Spot};

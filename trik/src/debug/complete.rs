@@ -2,6 +2,8 @@
 //!
 //! Owns which names fit where. Pure: knows no terminal and no program.
 
+use super::listing::Listing;
+use super::report::Report;
 use super::words;
 
 /// What follows a command.
@@ -36,6 +38,18 @@ pub(super) struct Known {
     pub places: Vec<String>,
     pub variables: Vec<String>,
     pub threads: Vec<String>,
+}
+
+impl Known {
+    /// Those of a program that tells this of itself, by its text.
+    pub(super) fn of(told: &Report, listing: &Listing) -> Self {
+        let (variables, threads) = (told.variables.iter(), told.threads.iter());
+        Self {
+            places: listing.names(),
+            variables: variables.map(|one| one.name.clone()).collect(),
+            threads: threads.map(|one| one.name.clone()).collect(),
+        }
+    }
 }
 
 /// Where the word begins that is being typed at the end of a line, in bytes, and what it may become, in order.

@@ -17,7 +17,7 @@ use crate::diagrams::save::must;
 use crate::error::Error;
 use crate::limits;
 use crate::remote::person::{question_of, with_reason};
-use crate::terminal::harmless;
+use crate::terminal::{harmless, harmless_lines};
 use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
 use lang_text::problem::{Locale, Words};
@@ -72,7 +72,6 @@ impl<'a> Terminal<'a> {
             told: Report::default(),
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
-            // Read once signals are: its thread must not have them.
             lines: Lines::none(),
             above: RefCell::new(None),
             asked: None,
@@ -118,8 +117,7 @@ impl<'a> Terminal<'a> {
         let mut said = why.in_locale(self.source.locale);
         if let NotUnderstood::NoBlock { text, .. } = why {
             self.look()?;
-            let mut variables = self.told.variables.iter();
-            if variables.any(|variable| variable.name == *text) {
+            if self.told.variables.iter().any(|one| one.name == *text) {
                 said += words::is_variable(text).in_locale(self.source.locale);
             }
         }
@@ -145,12 +143,7 @@ impl<'a> Terminal<'a> {
     }
 
     fn prompt(&mut self) -> Result<(), Error> {
-        let (told, listing) = (&self.told, &self.listing);
-        self.lines.know(|| Known {
-            places: listing.names(),
-            variables: told.variables.iter().map(|one| one.name.clone()).collect(),
-            threads: told.threads.iter().map(|one| one.name.clone()).collect(),
-        });
+        self.lines.know(|| Known::of(&self.told, &self.listing));
         let is_shown = self.lines.ask(Wanted::Command);
         match self.is_interactive && !is_shown {
             true => self.write(PROMPT),
@@ -437,7 +430,7 @@ impl<'a> Terminal<'a> {
         let diagram = diagram.as_deref();
         let opened = match must(flow::open(file, diagram), file, *locale) {
             Ok(opened) => opened,
-            Err(refusal) => return self.say(&lines_of(&refusal.lines.join("\n"))),
+            Err(refusal) => return self.say(&harmless_lines(&refusal.lines.join("\n"))),
         };
         let version = match &opened {
             flow::Program::Diagram(opened) => Written::Diagram(&opened.project),
@@ -452,8 +445,10 @@ impl<'a> Terminal<'a> {
                 self.look()?;
                 self.show_stop()
             }
-            Changed::Wrong(why) => self.says(words::unchanged(&lines_of(&why))),
-            Changed::CannotBe(why) => self.says(words::unchanged_unless_anew(&lines_of(&why))),
+            Changed::Wrong(why) => self.says(words::unchanged(&harmless_lines(&why))),
+            Changed::CannotBe(why) => {
+                self.says(words::unchanged_unless_anew(&harmless_lines(&why)))
+            }
         }
     }
 
@@ -602,9 +597,4 @@ impl<'a> Terminal<'a> {
 fn question(asked: &Asked) -> String {
     let shown = question_of(&asked.variable, &asked.prompt, &asked.default);
     with_reason(&asked.wrong, shown)
-}
-
-/// Lines of others, for a terminal.
-fn lines_of(text: &str) -> String {
-    text.lines().map(harmless).collect::<Vec<_>>().join("\n")
 }

@@ -3,6 +3,8 @@
 //! Owns the words, their short forms and their help. What an order does is known in `lang_diagram::debug`.
 
 use super::listing::{Listing, Meant};
+use super::stops::words::typed;
+use super::target::words::ambiguous;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Breakpoint, Step};
 use lang_text::problem::{Locale, Words};
@@ -100,14 +102,6 @@ impl NotUnderstood {
     }
 }
 
-/// A text means several blocks, and how each of them is said.
-pub(crate) fn ambiguous(text: &str, choices: &str) -> Words {
-    Words::new(
-        format!("'{text}' means several blocks; give the line of one: {choices}"),
-        format!("'{text}' - это несколько блоков; назовите строку одного: {choices}"),
-    )
-}
-
 /// What a command lacks.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) enum Lacking {
@@ -173,36 +167,11 @@ pub(super) struct Row {
     russian: &'static str,
 }
 
-/// Words that stand for what is typed in their place, in English and Russian.
-const STAND_INS: [[&str; 2]; 7] = [
-    ["LINE", "СТРОКА"],
-    ["TEXT", "ТЕКСТ"],
-    ["EXPRESSION", "ВЫРАЖЕНИЕ"],
-    ["THREAD", "ПОТОК"],
-    ["NAME", "ИМЯ"],
-    ["NUMBER", "НОМЕР"],
-    ["MS", "МС"],
-];
-
-/// A form of a command in the language of a person.
-fn form(english: &str, locale: Locale) -> String {
-    let mut form = english.to_owned();
-    match locale {
-        Locale::English => {}
-        Locale::Russian => {
-            for [word, russian] in STAND_INS {
-                form = form.replace(word, russian);
-            }
-        }
-    }
-    form
-}
-
 impl Row {
     /// Its words, and what follows them.
     pub(super) fn form(&self, locale: Locale) -> String {
         let words = self.words.replace(' ', ", ");
-        format!("{words} {}", form(self.more, locale))
+        format!("{words} {}", typed(self.more, locale))
     }
 
     /// What it does.

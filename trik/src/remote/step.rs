@@ -12,7 +12,6 @@ use crate::debug::report::{Report, State};
 use crate::debug::stops;
 use crate::debug::target::words;
 use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
-use crate::debug::words::ambiguous;
 use crate::error::Error;
 use crate::language;
 use crate::output::standard;
@@ -242,7 +241,7 @@ fn block(place: &str, listing: Option<&Listing>, locale: Locale) -> Result<Box<s
             Meant::Block(block) => Ok(block),
             Meant::Nothing => Err(none(words::no_such_block(&listing.near(place)))),
             Meant::Several(blocks) => {
-                let why = ambiguous(&harmless(place), &listing.choices(&blocks));
+                let why = words::ambiguous(&harmless(place), &listing.choices(&blocks));
                 Err(Refusal {
                     code: UNREADABLE,
                     ..Refusal::new(why.in_locale(locale).to_owned())

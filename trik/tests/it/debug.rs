@@ -220,6 +220,42 @@ fn an_empty_condition_is_refused_before_a_robot_is_asked() {
     }
 }
 
+/// Places of a program that drives which are none, and what is said of each.
+fn not_there(file: &str) -> Vec<(Vec<&str>, &str)> {
+    vec![
+        (
+            vec!["break", "5"],
+            "lines, labels and captions are those of --file",
+        ),
+        (
+            vec!["break", "drive"],
+            "lines, labels and captions are those of --file",
+        ),
+        (
+            vec!["break", "n"],
+            "of --file FILE; n is a variable: trik break n --change stops when it has changed\n",
+        ),
+        (
+            vec!["break", "n", "--file", file],
+            "no such block; n is a variable: trik break n --change stops",
+        ),
+        (
+            vec!["break", "Tmier", "--file", file],
+            "no such block; did you mean 'Timer'?\n",
+        ),
+        (
+            vec!["break", "Function", "--file", file],
+            "'Function' means several blocks; give the line of one: 2 (Function: n = 0), 5 (Function: n = n + 1)\n",
+        ),
+        (vec!["break", "99", "--file", file], "no such line"),
+        (vec!["break", "{nobody}"], "the program has no such block"),
+        (
+            vec!["break", "5", "--if", "n >", "--file", file],
+            "the condition: 1:3 ",
+        ),
+    ]
+}
+
 #[test]
 fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
     let Some(robot) = Reachable::new() else {
@@ -254,39 +290,8 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
     assert!(said.contains("past, "), "{said}");
     let said = trik(&["break", "n", "--change"]).good();
     assert!(said.contains(": n was "), "{said}");
-    for (words, why) in [
-        (
-            &["break", "5"][..],
-            "lines, labels and captions are those of --file",
-        ),
-        (
-            &["break", "drive"],
-            "lines, labels and captions are those of --file",
-        ),
-        (
-            &["break", "n"],
-            "of --file FILE; n is a variable: trik break n --change stops when it has changed\n",
-        ),
-        (
-            &["break", "n", "--file", &file],
-            "no such block; n is a variable: trik break n --change stops",
-        ),
-        (
-            &["break", "Tmier", "--file", &file],
-            "no such block; did you mean 'Timer'?\n",
-        ),
-        (
-            &["break", "Function", "--file", &file],
-            "'Function' means several blocks; give the line of one: 2 (Function: n = 0), 5 (Function: n = n + 1)\n",
-        ),
-        (&["break", "99", "--file", &file], "no such line"),
-        (&["break", "{nobody}"], "the program has no such block"),
-        (
-            &["break", "5", "--if", "n >", "--file", &file],
-            "the condition: 1:3 ",
-        ),
-    ] {
-        let refused = trik(words);
+    for (words, why) in not_there(&file) {
+        let refused = trik(&words);
         assert_ne!(refused.code(), 0, "{words:?}");
         assert!(
             refused.stderr.contains(why),

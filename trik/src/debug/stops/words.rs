@@ -191,6 +191,31 @@ pub(crate) fn last_of_help() -> Words {
     )
 }
 
+/// Words that stand for what is typed in their place, in English and Russian.
+const STAND_INS: [[&str; 2]; 7] = [
+    ["LINE", "СТРОКА"],
+    ["TEXT", "ТЕКСТ"],
+    ["EXPRESSION", "ВЫРАЖЕНИЕ"],
+    ["THREAD", "ПОТОК"],
+    ["NAME", "ИМЯ"],
+    ["NUMBER", "НОМЕР"],
+    ["MS", "МС"],
+];
+
+/// How a command is typed, in the language of a person.
+pub(crate) fn typed(english: &str, locale: Locale) -> String {
+    let mut typed = english.to_owned();
+    match locale {
+        Locale::English => {}
+        Locale::Russian => {
+            for [word, russian] in STAND_INS {
+                typed = typed.replace(word, russian);
+            }
+        }
+    }
+    typed
+}
+
 /// Before where and why.
 pub(crate) fn stopped() -> Words {
     Words::new("stopped", "остановлена")

@@ -294,6 +294,14 @@ pub(crate) fn no_such_block(near: &Words) -> Words {
     )
 }
 
+/// A text means several blocks, and how each of them is said.
+pub(crate) fn ambiguous(text: &str, choices: &str) -> Words {
+    Words::new(
+        format!("'{text}' means several blocks; give the line of one: {choices}"),
+        format!("'{text}' - это несколько блоков; назовите строку одного: {choices}"),
+    )
+}
+
 /// After a refusal of a place that is the name of a variable.
 pub(crate) fn is_variable(name: &str) -> Words {
     Words::new(
