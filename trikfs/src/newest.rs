@@ -345,11 +345,13 @@ impl Newest {
     /// Answers reads whose time is over, or all if the source is silent, and drops a page that is not to be used; says when
     /// the next read is due.
     pub fn expire(&self) -> Option<Instant> {
+        let mut again = None;
         if let Some(node) = self.node.upgrade() {
             self.page.drop_unwanted(&node.engine);
+            again = self.close_unused(&node);
         }
         if lock(&self.waiting).is_empty() {
-            return None;
+            return again;
         }
         let is_silent = self.is_silent();
         let now = Instant::now();
@@ -376,7 +378,7 @@ impl Newest {
             }
             self.finish(&one, Some(error));
         }
-        next
+        next.into_iter().chain(again).min()
     }
 
     fn finish(&self, waiting: &Waiting, error: Option<Error>) {
@@ -421,8 +423,11 @@ impl Newest {
         if is_gone || node.is_retired() {
             work.source = Source::Closed;
         }
-        if matches!(node.description.pace, Pace::Every { .. }) {
-            self.close_if_at_rest(&mut work);
+        match node.description.pace {
+            Pace::Every { .. } => self.close_if_at_rest(&mut work),
+            // The last one may have gone meanwhile.
+            Pace::OnRead => self.close_if_unused(&mut work),
+            Pace::OnEvent => {}
         }
         drop(work);
         if let Err(error) = outcome {

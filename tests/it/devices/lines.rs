@@ -7,6 +7,11 @@ use std::os::unix::fs::PermissionsExt;
 
 /// A sensor whose script begins with these lines; it notes its calls, makes both pipes and removes them.
 fn sensor(script: &str) -> Option<Mount> {
+    sensor_with(script, "")
+}
+
+/// The same, whose node has more than the usual.
+fn sensor_with(script: &str, more: &str) -> Option<Mount> {
     let board = Board::new();
     let text = format!(
         "#!/bin/sh
@@ -22,10 +27,35 @@ esac
     let path = board.file("sensor", text);
     fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
     board.file("calls", "");
-    mount_on(
-        board,
-        "trikfs = { line = { src = lines{ path = '$DIR/out', input = '$DIR/in', start = { '$DIR/sensor', 'start' }, stop = { '$DIR/sensor', 'stop' } }, input_tuple_size = 16 } }",
-    )
+    let config = format!(
+        "trikfs = {{ line = {{ src = lines{{ path = '$DIR/out', input = '$DIR/in', start = {{ '$DIR/sensor', 'start' }}, stop = {{ '$DIR/sensor', 'stop' }} }}, input_tuple_size = 16{more} }} }}"
+    );
+    mount_on(board, &config)
+}
+
+#[test]
+fn a_reader_that_goes_while_lines_are_converted_stops_the_sensor() {
+    let slow =
+        ", output_tuple_size = 16, budget_us = 10000000, converter = function(a_s, a, b_s, b)
+      local sum = 0
+      for i = 1, 3e7 do sum = sum + i end
+      assert(sum > 0)
+      for i = 0, 15 do ba.set(b, i, ba.get(a, i)) end
+    end";
+    let Some(m) = sensor_with("", slow) else {
+        return;
+    };
+    m.python(
+        "fd = open_ro(M + '/line/bin_data', os.O_NONBLOCK)
+eventually(lambda: os.path.exists(D + '/in'), 'the pipes')
+pipe = feed('out')
+os.write(pipe, b'one\\n' * 40)
+eventually(lambda: stat_of(M + '/line/stats', 'samples') >= 1, 'a first sample')
+assert stat_of(M + '/line/stats', 'samples') < 40, 'others are on their way'
+os.close(fd)
+eventually(lambda: text(D + '/calls') == 'start\\nstop\\n', 'the stop')
+",
+    );
 }
 
 #[test]

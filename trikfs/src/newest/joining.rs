@@ -3,15 +3,16 @@
 //! Owns what their coming starts (a source is opened, a clock that rested samples) and what ends without them. `need` counts
 //! them; what a sample is, is the business of `newest`.
 
-use super::{Needed, Newest, Source, Thread, Work, pace};
+use super::{Needed, Newest, SILENCE, Source, Thread, Work, pace};
 use crate::crew::lock_patiently;
 use crate::errno::Error;
+use crate::events::Due;
 use crate::limits;
 use crate::node::Node;
 use config::description::Pace;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, TryLockError};
 use std::time::{Duration, Instant};
 
 impl Newest {
@@ -127,9 +128,30 @@ impl Newest {
         }
         if node.description.pace == Pace::OnRead
             && self.users.fetch_sub(1, Ordering::Relaxed) == 1
-            // A sampler that is stuck in the device keeps it; the next reader's end tries again.
-            && let Ok(mut work) = self.work.try_lock()
+            && let Some(again) = self.close_unused(&node)
         {
+            let due: Arc<dyn Due> = node.clone();
+            node.engine.schedule.at(again, Arc::downgrade(&due));
+        }
+    }
+
+    /// Closes the source of a node that is sampled on read only if nobody has it open; when to try again, if somebody takes a
+    /// sample at the moment, or is stuck in the device.
+    pub(super) fn close_unused(&self, node: &Node) -> Option<Instant> {
+        if node.description.pace != Pace::OnRead || self.users.load(Ordering::Relaxed) > 0 {
+            return None;
+        }
+        match self.work.try_lock() {
+            Ok(mut work) => self.close_if_unused(&mut work),
+            Err(TryLockError::Poisoned(work)) => self.close_if_unused(&mut work.into_inner()),
+            Err(TryLockError::WouldBlock) => return Some(Instant::now() + SILENCE),
+        }
+        None
+    }
+
+    /// With the lock under which users come.
+    pub(super) fn close_if_unused(&self, work: &mut Work) {
+        if self.users.load(Ordering::Relaxed) == 0 {
             work.source = Source::Closed;
         }
     }
