@@ -2,12 +2,15 @@
 //!
 //! Owns what is added to a fault on its way to people. Reports in the form of the real program do not have it.
 
+pub(super) mod words;
+
 use super::names::{Kind, Names};
 use super::tree::{Node, Tree};
 use super::types::Type;
-use super::words::{Fault, Reason, did_you_mean, gives_no_value, keeps_type};
+use super::words::{Fault, Reason};
 use lang_text::near::nearest;
 use lang_text::problem::Problem;
+use words::{did_you_mean, gives_no_value, keeps_type};
 
 /// A fault of a text as a problem for people, with what the names say about it.
 pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {

@@ -21,6 +21,7 @@ mod lexer;
 pub mod limits;
 pub mod literal;
 pub mod names;
+mod own;
 pub mod parser;
 pub mod reserved;
 mod run;

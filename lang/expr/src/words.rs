@@ -2,14 +2,9 @@
 //!
 //! English sentences begin as the real program's do, so that its reports can be compared; what to do follows.
 
-mod hints;
-
 use crate::limits;
-use crate::names::written;
+use crate::own::written;
 use crate::value::float_text;
-use hints::meant_in_russian;
-pub use hints::{Clash, Meant};
-pub(super) use hints::{did_you_mean, gives_no_value, keeps_type};
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -23,6 +18,30 @@ pub enum Stage {
     Semantic,
     /// While it ran.
     Runtime,
+}
+
+/// What a token that cannot stand in its place may be meant for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Meant {
+    /// Nobody knows.
+    Unknown,
+    /// This sign, of which it is a part.
+    Sign(&'static str),
+    /// What blocks do, and words of the language elsewhere.
+    Block,
+}
+
+/// Which types do not fit in an assignment, as far as they are known.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Clash {
+    /// The variable that is assigned, or whose element is.
+    pub name: String,
+    /// Whether it is an element.
+    pub is_element: bool,
+    /// The types that it has.
+    pub had: String,
+    /// Those of the value.
+    pub given: String,
 }
 
 /// What is wrong.
@@ -487,7 +506,7 @@ impl Reason {
 }
 
 /// The beginning of a text that may be very long.
-fn short(text: &str) -> String {
+pub(crate) fn short(text: &str) -> String {
     const SHOWN: usize = 80;
     let mut shown: String = text.chars().take(SHOWN).collect();
     if shown.len() < text.len() {
@@ -528,7 +547,7 @@ fn token(shown: &str) -> &str {
 }
 
 /// Names of types in Russian.
-fn kinds_in_russian(kinds: &str) -> String {
+pub(crate) fn kinds_in_russian(kinds: &str) -> String {
     let mut text = kinds.to_owned();
     for (english, russian) in [
         ("boolean", "логический"),
@@ -543,6 +562,18 @@ fn kinds_in_russian(kinds: &str) -> String {
         text = text.replace(english, russian);
     }
     text
+}
+
+/// What may be meant, after the name of the token.
+fn meant_in_russian(meant: Meant) -> String {
+    match meant {
+        Meant::Unknown => String::new(),
+        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
+        Meant::Block => {
+            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
+                .into()
+        }
+    }
 }
 
 #[cfg(test)]

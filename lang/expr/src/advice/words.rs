@@ -1,34 +1,10 @@
-//! What may be meant by what is wrong: a sign, a name, a value of another type.
+//! What may be meant by what is wrong: a name, a value of another type.
 //!
 //! Owns the words of advice that needs more than the mistake itself. What is wrong is in `words`.
 
-use super::{kinds_in_russian, short};
-use crate::names::written;
+use crate::own::written;
+use crate::words::{Clash, kinds_in_russian, short};
 use lang_text::problem::Words;
-
-/// What a token that cannot stand in its place may be meant for.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Meant {
-    /// Nobody knows.
-    Unknown,
-    /// This sign, of which it is a part.
-    Sign(&'static str),
-    /// What blocks do, and words of the language elsewhere.
-    Block,
-}
-
-/// Which types do not fit in an assignment, as far as they are known.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Clash {
-    /// The variable that is assigned, or whose element is.
-    pub name: String,
-    /// Whether it is an element.
-    pub is_element: bool,
-    /// The types that it has.
-    pub had: String,
-    /// Those of the value.
-    pub given: String,
-}
 
 /// The name that was meant.
 pub(crate) fn did_you_mean(known: &str) -> Words {
@@ -76,16 +52,4 @@ pub(crate) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
             meant.russian
         ),
     )
-}
-
-/// What may be meant, after the name of the token.
-pub(super) fn meant_in_russian(meant: Meant) -> String {
-    match meant {
-        Meant::Unknown => String::new(),
-        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
-        Meant::Block => {
-            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
-                .into()
-        }
-    }
 }
