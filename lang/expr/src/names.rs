@@ -2,14 +2,10 @@
 //!
 //! Variables are global to a project, as in the real program. Knows no texts and no values but constants.
 
-use super::advice::words::keeps_type;
 use super::reserved::{self, Function, Kit, SENSORS, SensorIndex, Shape};
 use super::types::{Element, Possible, Type, Types, Variable};
 use super::value::{Compat, Value};
-use super::words::Clash;
 use crate::limits;
-pub use crate::own::{is_own, own_name, written};
-use lang_text::problem::Words;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -39,6 +35,24 @@ pub(super) struct Entry {
     pub(super) variable: Variable,
     /// `None`: not yet seen by the types.
     pub(super) declared: Option<Declaration>,
+}
+
+/// What divides a name from whose own it is; no text has it in a name.
+const OWNER: char = '@';
+
+/// The name that stands for `name` where it belongs to the owner of this number alone.
+pub fn own_name(name: &str, owner: u32) -> Rc<str> {
+    format!("{name}{OWNER}{owner}").into()
+}
+
+/// A name as the text has it.
+pub fn written(name: &str) -> &str {
+    name.split(OWNER).next().unwrap_or(name)
+}
+
+/// Whether a name is somebody's own.
+pub fn is_own(name: &str) -> bool {
+    name.contains(OWNER)
 }
 
 /// All names of a project.
@@ -283,18 +297,7 @@ impl Names {
         true
     }
 
-    /// What is said of a value that a variable cannot take, because it keeps its type.
-    pub fn refused(&mut self, slot: Slot, value: &Value) -> Words {
-        let given = self.type_of_value(value, 0);
-        keeps_type(&Clash {
-            name: self.name(slot).to_owned(),
-            is_element: false,
-            had: self.type_name(self.type_of(slot)),
-            given: self.type_name(given),
-        })
-    }
-
-    fn type_of_value(&mut self, value: &Value, depth: u16) -> Type {
+    pub(super) fn type_of_value(&mut self, value: &Value, depth: u16) -> Type {
         match value {
             Value::Nil => Type::Nil,
             Value::Bool(_) => Type::Bool,

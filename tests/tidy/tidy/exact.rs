@@ -69,8 +69,8 @@ fn numbers_are_the_same_on_every_machine() {
     let mut complaints = Vec::new();
     // What is written into programs of other languages stands in the folders of generators.
     let of_them = |source: &&Source| {
-        let is_in = |name: &&str| source.path.starts_with(&format!("{name}/src/"));
-        EXACT.iter().any(|name| is_in(&name)) && !source.path.contains("/generate/")
+        let is_in = |name: &str| source.path.starts_with(&format!("{name}/src/"));
+        EXACT.iter().any(|name| is_in(name)) && !source.path.contains("/generate/")
     };
     for source in sources()
         .iter()

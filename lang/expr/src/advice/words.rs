@@ -1,13 +1,13 @@
-//! What may be meant by what is wrong: a name, a value of another type.
+//! Words of advice: which name was meant, which type a variable keeps.
 //!
-//! Owns the words of advice that needs more than the mistake itself. What is wrong is in `words`.
+//! Owns advice that needs more than the fault itself. What is wrong is in the words of the crate.
 
-use crate::own::written;
+use crate::names::written;
 use crate::words::{Clash, kinds_in_russian, short};
 use lang_text::problem::Words;
 
 /// The name that was meant.
-pub(crate) fn did_you_mean(known: &str) -> Words {
+pub(super) fn did_you_mean(known: &str) -> Words {
     let known = short(written(known));
     Words::new(
         format!("Did you mean '{known}'?"),
@@ -16,7 +16,7 @@ pub(crate) fn did_you_mean(known: &str) -> Words {
 }
 
 /// What a variable is and what it was given.
-pub(crate) fn keeps_type(clash: &Clash) -> Words {
+pub(super) fn keeps_type(clash: &Clash) -> Words {
     let name = short(written(&clash.name));
     let (english, russian) = match clash.is_element {
         true => (
@@ -38,7 +38,7 @@ pub(crate) fn keeps_type(clash: &Clash) -> Words {
 }
 
 /// A name that no text has taught a type, and the one that was meant.
-pub(crate) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
+pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
     let name = short(written(name));
     let meant = meant.map_or_else(|| Words::new("", ""), did_you_mean);
     let space = if meant.english.is_empty() { "" } else { " " };
