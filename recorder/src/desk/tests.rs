@@ -3,7 +3,8 @@
 use super::*;
 use crate::entry::Known;
 use journal::node::Node;
-use sample_bus::{Rights, Writer, place};
+use sample_bus::place::{self, Directory};
+use sample_bus::{Rights, Writer};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::sync::mpsc::{Sender, channel};
@@ -13,6 +14,8 @@ use tempfile::{TempDir, tempdir};
 struct Tree {
     root: TempDir,
     rings: PathBuf,
+    /// As a publisher has it: without the lock any mount of this machine takes the rings for those of a killed one.
+    _directory: Directory,
     writers: Vec<Writer>,
 }
 
@@ -20,10 +23,11 @@ impl Tree {
     fn new() -> Self {
         let root = tempdir().unwrap();
         let rings = place::directory(Path::new(place::SHARED_MEMORY), root.path()).unwrap();
-        fs::create_dir(&rings).unwrap();
+        let directory = Directory::take(&rings, 0o700).unwrap();
         Self {
             root,
             rings,
+            _directory: directory,
             writers: Vec::new(),
         }
     }

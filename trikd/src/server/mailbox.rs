@@ -241,8 +241,9 @@ impl Mailbox {
                 return named.unwrap_or_else(own_ip).to_string();
             }
             Question::Connected => {
-                let robots = self.robots.borrow();
-                return flag(robots.iter().any(|robot| robot.link.is_some()));
+                // Before a robot has said its hull number, nothing that is sent to that would reach it.
+                let is_heard = |robot: &Robot| robot.link.is_some() && robot.hull != UNKNOWN_HULL;
+                return flag(self.robots.borrow().iter().any(is_heard));
             }
             Question::Enabled => return flag(self.port.get().is_some()),
             // Our own address is looked for whenever somebody asks.

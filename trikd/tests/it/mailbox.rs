@@ -2,6 +2,7 @@
 
 use crate::rig::{Client, Robot, robot, small_tree};
 use harness::eventually;
+use std::net::TcpListener;
 
 /// A program that asks the mailbox and prints what it hears.
 fn talk(robot: &Robot, words: &str) -> Client {
@@ -156,6 +157,27 @@ fn a_message_waits_for_the_next_program_until_a_stop() {
     client.send("run:second.py");
     let told = client.until("print: got");
     assert!(!told.contains("two"), "{told}");
+}
+
+#[test]
+fn a_robot_is_connected_when_its_hull_number_is_known() {
+    let robot = robot(&[]);
+    let door = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = door.local_addr().expect("an address").port();
+    let mut client = robot.client("control");
+    client.keep_alive();
+    client.send(&format!(
+        "file:join.py:mailbox.joinNetwork('127.0.0.1', {port}, 5)\nprint('joined', mailbox.isConnected())\n\
+         while not mailbox.isConnected(): script.wait(5)\nmailbox.send(7, 'hello')\nprint('sent')\n"
+    ));
+    client.send("run:join.py");
+    client.until("print: joined False\n");
+    let (peer, _) = door.accept().expect("the robot");
+    let mut peer = Client::over(peer);
+    peer.until("register:");
+    peer.send("self:7");
+    client.until("print: sent\n");
+    peer.until("data:hello");
 }
 
 #[test]
