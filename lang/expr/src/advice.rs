@@ -2,12 +2,16 @@
 //!
 //! Owns what is added to a fault on its way to people. Reports in the form of the real program do not have it.
 
-use super::names::{Kind, Names};
+mod words;
+
+use super::names::{Kind, Names, Slot};
 use super::tree::{Node, Tree};
 use super::types::Type;
-use super::words::{Fault, Reason, did_you_mean, gives_no_value, keeps_type};
+use super::value::Value;
+use super::words::{Clash, Fault, Reason};
 use lang_text::near::nearest;
-use lang_text::problem::Problem;
+use lang_text::problem::{Problem, Words};
+use words::{did_you_mean, gives_no_value, keeps_type};
 
 /// A fault of a text as a problem for people, with what the names say about it.
 pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
@@ -58,6 +62,17 @@ pub fn explained(fault: &Fault, tree: &Tree, names: &Names) -> Problem {
         | Reason::TooMuchWork => None,
     };
     problem
+}
+
+/// What is said of a value that a variable cannot take, because it keeps its type.
+pub fn refused(names: &mut Names, slot: Slot, value: &Value) -> Words {
+    let given = names.type_of_value(value, 0);
+    keeps_type(&Clash {
+        name: names.name(slot).to_owned(),
+        is_element: false,
+        had: names.type_name(names.type_of(slot)),
+        given: names.type_name(given),
+    })
 }
 
 /// The variable at the place of a fault, if nothing has given it a type.

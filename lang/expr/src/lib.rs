@@ -30,7 +30,7 @@ pub mod types;
 pub mod value;
 pub mod words;
 
-pub use advice::explained;
+pub use advice::{explained, refused};
 pub use bounded::constant;
 pub use escape::{escape, unescape};
 pub use names::{Kind, Names, Slot};

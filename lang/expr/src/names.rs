@@ -5,9 +5,7 @@
 use super::reserved::{self, Function, Kit, SENSORS, SensorIndex, Shape};
 use super::types::{Element, Possible, Type, Types, Variable};
 use super::value::{Compat, Value};
-use super::words::{Clash, keeps_type};
 use crate::limits;
-use lang_text::problem::Words;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -299,18 +297,7 @@ impl Names {
         true
     }
 
-    /// What is said of a value that a variable cannot take, because it keeps its type.
-    pub fn refused(&mut self, slot: Slot, value: &Value) -> Words {
-        let given = self.type_of_value(value, 0);
-        keeps_type(&Clash {
-            name: self.name(slot).to_owned(),
-            is_element: false,
-            had: self.type_name(self.type_of(slot)),
-            given: self.type_name(given),
-        })
-    }
-
-    fn type_of_value(&mut self, value: &Value, depth: u16) -> Type {
+    pub(super) fn type_of_value(&mut self, value: &Value, depth: u16) -> Type {
         match value {
             Value::Nil => Type::Nil,
             Value::Bool(_) => Type::Bool,

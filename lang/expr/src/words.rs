@@ -2,14 +2,9 @@
 //!
 //! English sentences begin as the real program's do, so that its reports can be compared; what to do follows.
 
-mod hints;
-
 use crate::limits;
 use crate::names::written;
 use crate::value::float_text;
-use hints::meant_in_russian;
-pub use hints::{Clash, Meant};
-pub(super) use hints::{did_you_mean, gives_no_value, keeps_type};
 use lang_text::problem::{Place, Position, Problem, Severity, Words};
 
 /// In which step it was found.
@@ -23,6 +18,30 @@ pub enum Stage {
     Semantic,
     /// While it ran.
     Runtime,
+}
+
+/// What a token that cannot stand in its place may be meant for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Meant {
+    /// Nobody knows.
+    Unknown,
+    /// This sign, of which it is a part.
+    Sign(&'static str),
+    /// What blocks do, and words of the language elsewhere.
+    Block,
+}
+
+/// Which types do not fit in an assignment, as far as they are known.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Clash {
+    /// The variable that is assigned, or whose element is.
+    pub name: String,
+    /// Whether it is an element.
+    pub is_element: bool,
+    /// The types that it has.
+    pub had: String,
+    /// Those of the value.
+    pub given: String,
 }
 
 /// What is wrong.
@@ -233,12 +252,7 @@ impl Reason {
             Self::TooFewArguments(count) => format!("Not enough parameters, {count} expected"),
             Self::NotAnalysed => "This construction is not supported by semantic analysis".into(),
             Self::OddNumber(text, value) => format!("The number {} counts as {value}", short(text)),
-            Self::OutOfRange(number) => {
-                format!(
-                    "{} is beyond the whole numbers that a block takes",
-                    float_text(*number)
-                )
-            }
+            Self::OutOfRange(number) => out_of_range(*number).english,
             Self::DivisionByZero => "Division by zero".into(),
             Self::RandomOfNothing => "random(0) has no numbers to choose from".into(),
             Self::Uninitialized(name) => {
@@ -397,12 +411,7 @@ impl Reason {
                  означает восьмеричную запись.",
                 short(text)
             ),
-            Self::OutOfRange(number) => format!(
-                "{} не входит в целые числа, которые берёт блок: от {} до {}.",
-                float_text(*number),
-                i32::MIN,
-                i32::MAX
-            ),
+            Self::OutOfRange(number) => out_of_range(*number).russian,
             Self::DivisionByZero
             | Self::RandomOfNothing
             | Self::Uninitialized(_)
@@ -487,7 +496,7 @@ impl Reason {
 }
 
 /// The beginning of a text that may be very long.
-fn short(text: &str) -> String {
+pub(super) fn short(text: &str) -> String {
     const SHOWN: usize = 80;
     let mut shown: String = text.chars().take(SHOWN).collect();
     if shown.len() < text.len() {
@@ -502,6 +511,31 @@ fn quoted(text: &str) -> String {
         true => short(text),
         false => format!("\"{}\"", short(text)),
     }
+}
+
+/// What may be meant, after the name of the token.
+fn meant_in_russian(meant: Meant) -> String {
+    match meant {
+        Meant::Unknown => String::new(),
+        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
+        Meant::Block => {
+            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
+                .into()
+        }
+    }
+}
+
+/// A number that no block takes.
+fn out_of_range(number: f64) -> Words {
+    let number = float_text(number);
+    Words::new(
+        format!("{number} is beyond the whole numbers that a block takes"),
+        format!(
+            "{number} не входит в целые числа, которые берёт блок: от {} до {}.",
+            i32::MIN,
+            i32::MAX
+        ),
+    )
 }
 
 /// Symbols that begin nothing, with what they may be meant for.
@@ -528,7 +562,7 @@ fn token(shown: &str) -> &str {
 }
 
 /// Names of types in Russian.
-fn kinds_in_russian(kinds: &str) -> String {
+pub(super) fn kinds_in_russian(kinds: &str) -> String {
     let mut text = kinds.to_owned();
     for (english, russian) in [
         ("boolean", "логический"),

@@ -3,7 +3,7 @@
 //! Owns what a motor's power may be. Numbers that are computed are looked at when the program runs.
 
 use super::found::{Found, port_place};
-use super::through::Made;
+use super::through::Emitted;
 use super::words;
 use crate::blocks::Kind;
 use crate::program::{Act, Flow, Op, Program, Target};
@@ -14,7 +14,7 @@ use lang_expr::{Source, Value};
 const FULL_POWER: i32 = 100;
 
 /// A number that does not fit where it comes.
-pub(super) fn look(program: &Program, made: Made, to: Target, found: &mut Found) {
+pub(super) fn look(program: &Program, made: Emitted, to: Target, found: &mut Found) {
     let node = program.node(to.node);
     let port = node.row.ports.get(usize::from(to.port));
     if port.is_none_or(|port| port.of != Kind::Whole) {

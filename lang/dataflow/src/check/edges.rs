@@ -4,7 +4,7 @@
 
 use super::constants;
 use super::found::{Found, port_place};
-use super::through::{Made, Through};
+use super::through::{Emitted, Through};
 use super::types::{Of, Types};
 use super::units::{Units, assigned_last};
 use super::words;
@@ -45,8 +45,8 @@ struct Texts<'a> {
     constants: HashMap<(NodeId, u8), Option<Rc<str>>>,
 }
 
-fn look_at_edge(made: Made, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
-    let Made { of, by } = made;
+fn look_at_edge(made: Emitted, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
+    let Emitted { of, by } = made;
     let program = texts.program;
     let node = program.node(to.node);
     let Some(port) = node.row.ports.get(usize::from(to.port)) else {
@@ -207,8 +207,8 @@ fn choices(row: &Row, port: u8) -> Option<&'static [&'static str]> {
 }
 
 /// A token that is none of the words that its port takes.
-fn look_at_word(made: Made, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
-    let Made { of, by } = made;
+fn look_at_word(made: Emitted, to: Target, texts: &mut Texts<'_>, found: &mut Found) {
+    let Emitted { of, by } = made;
     let program = texts.program;
     let Some(choices) = choices(program.node(to.node).row, to.port) else {
         return;

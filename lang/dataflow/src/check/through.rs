@@ -11,12 +11,12 @@ use std::collections::HashMap;
 
 /// Tokens of one kind, and the output that makes them.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) struct Made {
+pub(super) struct Emitted {
     pub(super) of: Of,
     pub(super) by: Target,
 }
 
-impl Made {
+impl Emitted {
     /// Whether one is told of and the other need not be; each text may be another word.
     fn is_like(&self, other: &Self) -> bool {
         self.of == other.of && (self.of != Of::Text || self.by == other.by)
@@ -25,8 +25,8 @@ impl Made {
 
 /// What comes out of input ports inside subprograms and of their calls, by node and port.
 pub(super) struct Through {
-    made: HashMap<(NodeId, u8), Vec<Made>>,
-    waiting: Vec<((NodeId, u8), Made)>,
+    made: HashMap<(NodeId, u8), Vec<Emitted>>,
+    waiting: Vec<((NodeId, u8), Emitted)>,
 }
 
 impl Through {
@@ -41,7 +41,7 @@ impl Through {
                 let by = Target { node: id, port };
                 if !hands_on(program, by) {
                     let of = outs[id as usize][usize::from(port)];
-                    all.come(program, to, Made { of, by });
+                    all.come(program, to, Emitted { of, by });
                 }
             }
         }
@@ -55,15 +55,15 @@ impl Through {
     }
 
     /// What an output gives, one after the other; `of`: all of it together.
-    pub(super) fn made(&self, by: Target, of: Of) -> Vec<Made> {
+    pub(super) fn made(&self, by: Target, of: Of) -> Vec<Emitted> {
         match self.made.get(&(by.node, by.port)) {
             Some(made) => made.clone(),
-            None => vec![Made { of, by }],
+            None => vec![Emitted { of, by }],
         }
     }
 
     /// A token comes to a port, and goes on if it is one of a subprogram.
-    fn come(&mut self, program: &Program, to: Target, made: Made) {
+    fn come(&mut self, program: &Program, to: Target, made: Emitted) {
         let Op::Flow(flow) = &program.node(to.node).op else {
             return;
         };
@@ -102,7 +102,7 @@ impl Through {
         }
     }
 
-    fn leave(&mut self, program: &Program, from: Target, made: Made) {
+    fn leave(&mut self, program: &Program, from: Target, made: Emitted) {
         if !hands_on(program, from) {
             return;
         }

@@ -361,7 +361,7 @@ impl Formulas {
         if let (Type::Int, Value::Float(_)) = (of, &value) {
             self.names.retype(slot, &value);
         } else if !is_of(of, &value) {
-            return Err(self.names.refused(slot, &value));
+            return Err(lang_expr::refused(&mut self.names, slot, &value));
         }
         let set = self.store.set(slot, value);
         set.map_err(|_| words::too_many_variables())

@@ -1,37 +1,13 @@
-//! What may be meant by what is wrong: a sign, a name, a value of another type.
+//! Words of advice: which name was meant, which type a variable keeps.
 //!
-//! Owns the words of advice that needs more than the mistake itself. What is wrong is in `words`.
+//! Owns advice that needs more than the fault itself. What is wrong is in the words of the crate.
 
-use super::{kinds_in_russian, short};
 use crate::names::written;
+use crate::words::{Clash, kinds_in_russian, short};
 use lang_text::problem::Words;
 
-/// What a token that cannot stand in its place may be meant for.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Meant {
-    /// Nobody knows.
-    Unknown,
-    /// This sign, of which it is a part.
-    Sign(&'static str),
-    /// What blocks do, and words of the language elsewhere.
-    Block,
-}
-
-/// Which types do not fit in an assignment, as far as they are known.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Clash {
-    /// The variable that is assigned, or whose element is.
-    pub name: String,
-    /// Whether it is an element.
-    pub is_element: bool,
-    /// The types that it has.
-    pub had: String,
-    /// Those of the value.
-    pub given: String,
-}
-
 /// The name that was meant.
-pub(crate) fn did_you_mean(known: &str) -> Words {
+pub(super) fn did_you_mean(known: &str) -> Words {
     let known = short(written(known));
     Words::new(
         format!("Did you mean '{known}'?"),
@@ -40,7 +16,7 @@ pub(crate) fn did_you_mean(known: &str) -> Words {
 }
 
 /// What a variable is and what it was given.
-pub(crate) fn keeps_type(clash: &Clash) -> Words {
+pub(super) fn keeps_type(clash: &Clash) -> Words {
     let name = short(written(&clash.name));
     let (english, russian) = match clash.is_element {
         true => (
@@ -62,7 +38,7 @@ pub(crate) fn keeps_type(clash: &Clash) -> Words {
 }
 
 /// A name that no text has taught a type, and the one that was meant.
-pub(crate) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
+pub(super) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
     let name = short(written(name));
     let meant = meant.map_or_else(|| Words::new("", ""), did_you_mean);
     let space = if meant.english.is_empty() { "" } else { " " };
@@ -76,16 +52,4 @@ pub(crate) fn gives_no_value(name: &str, meant: Option<&str>) -> Words {
             meant.russian
         ),
     )
-}
-
-/// What may be meant, after the name of the token.
-pub(super) fn meant_in_russian(meant: Meant) -> String {
-    match meant {
-        Meant::Unknown => String::new(),
-        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
-        Meant::Block => {
-            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
-                .into()
-        }
-    }
 }
