@@ -243,7 +243,7 @@ fn a_variable_that_is_set_counts_at_the_next_reaction() {
     assert!(told(&mut desk, "set k='far'").contains("\"done\":false"));
     let refused = told(&mut desk, "set kk=1");
     assert!(
-        refused.contains("no variable 'kk' with a value; it has: k"),
+        refused.contains("no variable 'kk' with a value; it has: n, k"),
         "{refused}"
     );
 }
