@@ -6,7 +6,11 @@ use crate::program::{Program, Source as Index};
 use lang_expr::reserved::SENSORS;
 use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
 use lang_text::problem::Problem;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+
+/// How often texts are looked at that need each other to know what their names are: as the check before a run does, a few
+/// times are enough but for texts that are in the wrong order on purpose.
+const ROUNDS: usize = 8;
 
 /// All expressions with their names and values.
 #[derive(Clone, Debug)]
@@ -63,7 +67,35 @@ impl Formulas {
 
     /// What is wrong with these texts once each has taught the names what it knows. The names themselves learn nothing.
     pub fn mistakes(&self, texts: &[Index]) -> Vec<(Index, Vec<Problem>)> {
+        let mut found = self.wrong(texts, &mut self.names.clone());
+        if found.is_empty() {
+            return found;
+        }
+        // What a name is may be said by a text whose turn has not come yet.
+        let these: HashSet<Index> = texts.iter().copied().collect();
+        let others = self.sources.iter().zip(0..);
+        let others = others.filter(|(_, index)| !these.contains(index));
+        let mut others: Vec<_> = others.map(|(source, _)| source.anew()).collect();
         let mut names = self.names.clone();
+        for _ in 0..ROUNDS {
+            let before = others.len();
+            others.retain_mut(|source| lang_expr::analyse(source, &mut names).is_err());
+            if others.len() == before {
+                break;
+            }
+            let mut taught = names.clone();
+            found = self.wrong(texts, &mut taught);
+            if found.is_empty() {
+                break;
+            }
+            // Others may need what these say.
+            names = taught;
+        }
+        found
+    }
+
+    /// The same with names that these texts teach.
+    fn wrong(&self, texts: &[Index], names: &mut Names) -> Vec<(Index, Vec<Problem>)> {
         let read = texts.iter().filter_map(|&index| {
             let source = self.sources.get(index as usize)?;
             Some((index, source.anew()))
@@ -72,11 +104,11 @@ impl Formulas {
         // What is wrong by now may be right when all names are known.
         let before: Vec<_> = read
             .iter_mut()
-            .map(|(_, source)| lang_expr::analyse(source, &mut names).err())
+            .map(|(_, source)| lang_expr::analyse(source, names).err())
             .collect();
         let looked = read.iter_mut().zip(before);
         let looked = looked.filter_map(|((index, source), before)| {
-            let problems = lang_expr::analyse(source, &mut names).err()?;
+            let problems = lang_expr::analyse(source, names).err()?;
             // A variable whose type did not fit has none afterwards, so only the first look could say which it had.
             let has_hint = |problems: &Vec<Problem>| problems.iter().any(|one| one.hint.is_some());
             let before = before.filter(|before| has_hint(before) && !has_hint(&problems));

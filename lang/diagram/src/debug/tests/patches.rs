@@ -213,3 +213,15 @@ fn a_version_with_another_type_is_refused_with_the_variable_and_both_types() {
         "{told}"
     );
 }
+
+#[test]
+fn a_version_may_read_what_has_no_value_yet() {
+    let (project, ids) = three();
+    let mut desk = Desk::of(&project);
+    let version = Version::of(&with(&project, &ids[3], "a = a + 5 * c"), World::default());
+    let Desk { session, robot, .. } = &mut desk;
+    let patched = session.patch(&version.unwrap(), WhenGone::End, robot, &mut Deaf);
+    assert!(patched.is_ok(), "{patched:?}");
+    desk.run(50);
+    assert!(counters(&desk)[0] > 5, "{:?}", counters(&desk));
+}
