@@ -241,6 +241,13 @@ fn a_variable_that_is_set_counts_at_the_next_reaction() {
     runs(&mut desk, &mut robot, 30, 40);
     assert_eq!(last(&robot), "power M3 15");
     assert!(told(&mut desk, "set k='far'").contains("\"done\":false"));
+    for odd in ["sqrt(0 - 1)", "exp(1000)", "{1, sqrt(0 - 1)}"] {
+        let refused = told(&mut desk, &format!("set k={odd}"));
+        assert!(
+            refused.contains("k would be infinite or no number"),
+            "{refused}"
+        );
+    }
     let refused = told(&mut desk, "set kk=1");
     assert!(
         refused.contains("no variable 'kk' with a value; it has: n, k"),

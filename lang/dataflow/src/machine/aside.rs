@@ -101,8 +101,8 @@ impl Machine {
     }
 
     /// The token that comes next gets the value of an expression, of the same kind as its own.
-    fn assign_token(&mut self, token: &Value, text: &str) -> Result<(), Vec<Problem>> {
-        let mut value = self.evaluate_aside(text)?;
+    fn assign_token(&mut self, name: &str, token: &Value, text: &str) -> Result<(), Vec<Problem>> {
+        let mut value = self.assignable(name, text)?;
         if let (Value::Int(_), &Value::Float(number)) = (token, &value) {
             // Blocks that read it were prepared for a whole number.
             let is_whole = number.fract() == 0.0 && f64::from(number as i32) == number;
@@ -123,6 +123,15 @@ impl Machine {
         Err(vec![Problem::error(why)])
     }
 
+    /// The value of an expression that a person assigns.
+    fn assignable(&mut self, name: &str, text: &str) -> Result<Value, Vec<Problem>> {
+        let value = self.evaluate_aside(text)?;
+        match values::is_finite(&value) {
+            true => Ok(value),
+            false => Err(vec![Problem::error(words::not_finite(name))]),
+        }
+    }
+
     /// Gives a variable of the program, or at a stop the token that comes next, `data`, the value of an expression.
     ///
     /// # Errors
@@ -130,13 +139,13 @@ impl Machine {
     /// be computed any more; the token is of another kind; nothing has changed then.
     pub fn assign_aside(&mut self, name: &str, text: &str) -> Result<(), Vec<Problem>> {
         if let Some(token) = self.next_token(name).cloned() {
-            return self.assign_token(&token, text);
+            return self.assign_token(name, &token, text);
         }
         let names: Vec<&str> = self.variables().map(|(name, _)| name).collect();
         if !names.contains(&name) {
             return Err(vec![Problem::error(words::no_variable(name, &names))]);
         }
-        let value = self.evaluate_aside(text)?;
+        let value = self.assignable(name, text)?;
         let mut formulas = self.formulas.clone();
         let assigned = formulas.assign(name, value);
         assigned.map_err(|words| vec![Problem::error(words)])?;

@@ -98,6 +98,15 @@ pub fn fits(value: &Value) -> bool {
     }
 }
 
+/// Whether all numbers of a value are numbers: a person assigns no other ones, for motors and waits take none.
+pub fn is_finite(value: &Value) -> bool {
+    match value {
+        Value::Float(number) => number.is_finite(),
+        Value::List(list) => list.items().iter().all(is_finite),
+        Value::Nil | Value::Bool(_) | Value::Int(_) | Value::Text(_) | Value::Unset => true,
+    }
+}
+
 /// Whether a token carries a value.
 pub fn is_unit(value: &Value) -> bool {
     match value {

@@ -276,6 +276,15 @@ pub(crate) fn assigns_aside() -> Words {
     )
 }
 
+/// What a person assigns is no number that a program can compute with.
+pub(crate) fn not_finite(name: &str) -> Words {
+    let name = short(name);
+    Words::new(
+        format!("{name} would be infinite or no number, and motors and waits need one"),
+        format!("{name} станет бесконечностью или не числом, а моторам и ожиданиям нужно число"),
+    )
+}
+
 pub(crate) fn no_variable(name: &str, known: &[&str]) -> Words {
     let near = near::did_you_mean(name, known.iter().copied());
     let there = list(known.iter().copied());
