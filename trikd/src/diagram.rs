@@ -14,6 +14,7 @@ mod debugging;
 mod flow;
 mod live;
 mod motors;
+mod parts;
 mod readings;
 mod robot;
 mod source;
@@ -141,11 +142,15 @@ impl Diagram {
             return self.ready(&source, watch, host).map_err(failed);
         }
         let lowered = lower(&opened.project, World::Robot)
+            .map_err(|problem| opened.project.on_sheet(problem))
             .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
         // A faulty block fails when it is reached, and what is wrong with it is told here.
         let warnings = warnings.take(limits::DIAGRAM_WARNINGS);
-        let told = warnings.map(|problem| (problem.severity, problem.in_locale(self.locale)));
+        let told = warnings.map(|problem| {
+            let placed = opened.project.on_sheet(problem.clone());
+            (problem.severity, placed.in_locale(self.locale))
+        });
         watch.tell_warnings(told, host);
         let options = Options {
             compat: self.compat,

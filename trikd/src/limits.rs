@@ -263,6 +263,8 @@ pub const VERSION_BLOCK_BYTES: usize = 12;
 pub const HEARING_MS: u64 = 5;
 /// How often it is looked whether a new version of a diagram is ready, in milliseconds.
 pub const VERSION_LOOK_MS: u64 = 1;
+/// How often a part of the robot that was not there is looked for by a diagram that uses it, in milliseconds.
+pub const PART_LOOK_MS: u64 = 200;
 /// How often a diagram tells where it is, in milliseconds.
 pub const WATCH_MS: u32 = 50;
 /// Bytes of the line that tells it to people.

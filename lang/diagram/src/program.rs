@@ -10,6 +10,7 @@ use super::blocks::act::Effect;
 use super::blocks::wait::Measure;
 use super::blocks::{Act, Copied, Row, Type, Wait};
 use super::ports::{Kit, Port};
+use super::project;
 use lang_text::problem::{Place, Problem};
 
 /// A place in [`Program::nodes`].
@@ -355,6 +356,16 @@ impl Sign {
 }
 
 impl Program {
+    /// A problem with the place of its block on the sheet, if it has one.
+    pub fn on_sheet(&self, problem: Problem) -> Problem {
+        let object = problem.place.object.as_deref();
+        let mut spots = self.spots.iter();
+        match spots.find(|spot| object == Some(&*spot.id)) {
+            Some(spot) => project::on_sheet(problem, spot.position),
+            None => problem,
+        }
+    }
+
     /// How many nodes there are.
     pub fn len(&self) -> usize {
         self.ops.len()

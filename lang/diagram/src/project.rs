@@ -3,6 +3,7 @@
 //! Owns plain data and look-ups. Knows neither the save's format nor the meaning of a block type.
 //! A block is what the editor keeps as a pair of objects, a graphical one (place, wiring) and a logical one (properties).
 
+use lang_text::problem::Problem;
 use std::collections::BTreeMap;
 
 /// A whole project.
@@ -114,7 +115,29 @@ pub struct Link {
     pub path: Vec<(f64, f64)>,
 }
 
+/// Says where the block of a problem is drawn, as `Timer (120, 40)`: a sheet may have many of the same type.
+pub(crate) fn on_sheet(mut problem: Problem, (x, y): (f64, f64)) -> Problem {
+    if let Some(block) = &mut problem.place.block {
+        let place = format!(" ({x:.0}, {y:.0})");
+        // It may have been said already.
+        if !block.ends_with(&place) {
+            block.push_str(&place);
+        }
+    }
+    problem
+}
+
 impl Project {
+    /// A problem with the place of its block on the sheet, if it has one.
+    pub fn on_sheet(&self, problem: Problem) -> Problem {
+        let object = problem.place.object.as_deref();
+        let mut blocks = self.diagrams.iter().flat_map(|one| &one.blocks);
+        match blocks.find(|block| object == Some(&*block.id)) {
+            Some(block) => on_sheet(problem, block.position),
+            None => problem,
+        }
+    }
+
     /// The diagram that a call names by its logical id: the first one, as the editor has it.
     pub fn called(&self, logical: &str) -> Option<usize> {
         self.diagrams

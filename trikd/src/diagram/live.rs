@@ -13,7 +13,7 @@ use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::{Refused, Version, WhenGone};
 use lang_diagram::project::Project;
-use lang_text::problem::{Locale, Severity, Words};
+use lang_text::problem::{Locale, Problem, Severity, Words};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -71,10 +71,12 @@ pub(super) fn prepared(
     fits(blocks.map(|block| &block.properties))
         .map_err(|why| Answer::unchanged(&name, why.in_locale(locale)))?;
     let checked = Version::mistakes(&save.project, World::Robot);
-    let found = checked.map_err(|why| Answer::unchanged(&name, &explained(&why, locale)))?;
+    let placed = |problem: &Problem| save.project.on_sheet(problem.clone());
+    let found =
+        checked.map_err(|why| Answer::unchanged(&name, &explained(&why, placed, locale)))?;
     let shown = save.problems.iter().chain(&found);
     let shown = shown.take(limits::DIAGRAM_WARNINGS);
-    let warnings = shown.map(|problem| (problem.severity, problem.in_locale(own)));
+    let warnings = shown.map(|problem| (problem.severity, placed(problem).in_locale(own)));
     Ok(Prepared {
         warnings: warnings.collect(),
         source: save.project,
@@ -108,15 +110,18 @@ pub(super) fn patch(
     let patched = version.and_then(|version| session.patch(&version, when_gone, robot, watch));
     match patched {
         Ok(patched) => Answer::changed(name, &patched.to_string()),
-        Err(why) => Answer::unchanged(name, &explained(&why, locale)),
+        Err(why) => Answer::unchanged(name, &explained(&why, Problem::clone, locale)),
     }
 }
 
-fn explained(why: &Refused, locale: Locale) -> String {
+/// `placed` gives a problem with the place of its block on the sheet.
+fn explained(why: &Refused, placed: impl Fn(&Problem) -> Problem, locale: Locale) -> String {
     match why {
         Refused::Ended => news::NO_DIAGRAM.to_owned(),
         Refused::Mistakes(problems) | Refused::Occupied(problems) => {
-            let lines = problems.iter().map(|problem| problem.in_locale(locale));
+            let lines = problems
+                .iter()
+                .map(|problem| placed(problem).in_locale(locale));
             lines.collect::<Vec<_>>().join("\n")
         }
     }

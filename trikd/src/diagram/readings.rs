@@ -2,6 +2,7 @@
 //!
 //! Owns the open files of the sensors that were read, and the heading that counts as 0. A reading that fails is none.
 
+use super::parts::Parts;
 use super::robot::Trouble;
 use crate::brick::Brick;
 use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
@@ -42,7 +43,7 @@ enum From {
 /// All sensors.
 pub struct Readings<'a> {
     brick: &'a Brick,
-    ports: HashMap<Port, From>,
+    ports: Parts<From>,
     cameras: HashMap<String, Camera>,
     keys: Keys,
     gamepad: Gamepad,
@@ -71,7 +72,7 @@ impl<'a> Readings<'a> {
     pub(super) fn new(brick: &'a Brick) -> Self {
         Self {
             brick,
-            ports: HashMap::new(),
+            ports: Parts::new(),
             cameras: HashMap::new(),
             keys: brick.keys(),
             gamepad: brick.gamepad(),
@@ -80,19 +81,19 @@ impl<'a> Readings<'a> {
         }
     }
 
-    fn find(&self, port: Port) -> From {
-        let from = match port.device() {
+    fn find(brick: &Brick, port: Port) -> Option<From> {
+        match port.device() {
             Device::Motor | Device::Servo => None,
-            Device::Encoder => self.brick.encoder(port.name()).map(From::Encoder),
-            Device::Plugged => self.brick.sensor(port.name()).map(From::Sensor),
-            Device::Gyroscope => self.brick.gyroscope().map(From::Gyroscope),
-            Device::Accelerometer => self.brick.accelerometer().map(From::Accelerometer),
+            Device::Encoder => brick.encoder(port.name()).map(From::Encoder),
+            Device::Plugged => brick.sensor(port.name()).map(From::Sensor),
+            Device::Gyroscope => brick.gyroscope().map(From::Gyroscope),
+            Device::Accelerometer => brick.accelerometer().map(From::Accelerometer),
             Device::LineSensor => Some(From::Line),
             Device::ColorSensor => Some(From::Colour),
             Device::ObjectSensor(ObjectPart::X) => Some(From::Object(0)),
             Device::ObjectSensor(ObjectPart::Y) => Some(From::Object(1)),
             Device::ObjectSensor(ObjectPart::Size) => Some(From::Object(2)),
-            Device::Lidar => self.brick.tree().has("lidar").then_some(From::Lidar),
+            Device::Lidar => brick.tree().has("lidar").then_some(From::Lidar),
             Device::Button(code) => {
                 let key = KEYS.iter().position(|key| i32::from(key.1) == code);
                 key.map(From::Key)
@@ -102,8 +103,7 @@ impl<'a> Readings<'a> {
             Device::Gamepad(GamepadPart::Wheel) => Some(From::Wheel),
             Device::Gamepad(GamepadPart::Button(number)) => Some(From::Button(number.into())),
             Device::Gamepad(GamepadPart::Connected) => Some(From::Connected),
-        };
-        from.unwrap_or(From::Nothing)
+        }
     }
 
     fn camera(&mut self, mode: &str) -> Option<&Camera> {
@@ -172,11 +172,9 @@ impl<'a> Readings<'a> {
     }
 
     fn from(&mut self, port: Port) -> &From {
-        if !self.ports.contains_key(&port) {
-            let found = self.find(port);
-            self.ports.insert(port, found);
-        }
-        self.ports.get(&port).unwrap_or(&From::Nothing)
+        let brick = self.brick;
+        let found = self.ports.get(port, || Self::find(brick, port));
+        found.unwrap_or(&From::Nothing)
     }
 
     pub(super) fn scalar(&mut self, port: Port) -> Option<i32> {

@@ -4,6 +4,7 @@
 //! original robots, and the first failure of a device is told. Knows no blocks and no time.
 
 use super::asking::Asking;
+use super::parts::Parts;
 use super::readings::Readings;
 use super::words::trouble;
 use crate::brick::Brick;
@@ -18,7 +19,7 @@ use lang_diagram::ports::Port;
 use lang_text::problem::{Locale, Problem};
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoroshiro64Star;
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashSet, VecDeque};
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
@@ -64,7 +65,7 @@ impl From<Unshown> for Trouble {
 pub struct Robot<'a> {
     brick: &'a Brick,
     host: &'a Host,
-    motors: HashMap<Port, Option<Motor>>,
+    motors: Parts<Motor>,
     readings: Readings<'a>,
     display: Display,
     /// Messages with the hull numbers of who sent them.
@@ -105,7 +106,7 @@ impl<'a> Robot<'a> {
         Self {
             brick,
             host,
-            motors: HashMap::new(),
+            motors: Parts::new(),
             readings: Readings::new(brick),
             display: Display::new(brick.tree().root()),
             mail: VecDeque::new(),
@@ -154,11 +155,7 @@ impl<'a> Robot<'a> {
 
     fn motor(&mut self, port: Port) -> Option<&Motor> {
         let brick = self.brick;
-        let found = self
-            .motors
-            .entry(port)
-            .or_insert_with(|| brick.motor(port.name()));
-        found.as_ref()
+        self.motors.get(port, || brick.motor(port.name()))
     }
 
     fn set_power(&mut self, port: Port, power: i32) {

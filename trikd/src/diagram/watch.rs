@@ -32,7 +32,7 @@ pub struct Watch {
     /// What was told when the program was loaded.
     at_load: BTreeSet<String>,
     /// Not told yet.
-    errors: Vec<String>,
+    errors: Vec<Problem>,
     reported_at: Option<u32>,
     /// What was told last of a data-flow program had its variables.
     had_variables: bool,
@@ -75,7 +75,7 @@ impl Watch {
 
     /// Tells what is new, if it is time.
     pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
-        let errors = self.tell_errors(host)?;
+        let errors = self.tell_errors(host, |problem| machine.program().on_sheet(problem))?;
         let held = match self.is_wanted {
             true => held(machine),
             false => Vec::new(),
@@ -108,7 +108,7 @@ impl Watch {
         host: &Host,
     ) -> io::Result<()> {
         let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
-        let errors = self.tell_errors(host)?;
+        let errors = self.tell_errors(host, |problem| problem)?;
         let is_news = self.is_new || self.has_moved || has_news;
         if !self.is_told(is_news, now, &errors) {
             return Ok(());
@@ -176,7 +176,7 @@ impl Watch {
     /// Keeps an error until it is told.
     pub(super) fn note(&mut self, problem: &Problem) {
         if self.errors.len() < lang_text::limits::PROBLEMS {
-            self.errors.push(problem.in_locale(self.locale));
+            self.errors.push(problem.clone());
         }
     }
 
@@ -199,9 +199,16 @@ impl Watch {
         }
     }
 
-    /// Errors since the last time, which are told at once, but for faults that were told at load.
-    fn tell_errors(&mut self, host: &Host) -> io::Result<Vec<String>> {
-        let errors = std::mem::take(&mut self.errors);
+    /// Errors since the last time, which are told at once, but for faults that were told at load. `placed` gives one with the
+    /// place of its block on the sheet.
+    fn tell_errors(
+        &mut self,
+        host: &Host,
+        placed: impl Fn(Problem) -> Problem,
+    ) -> io::Result<Vec<String>> {
+        let errors = std::mem::take(&mut self.errors).into_iter();
+        let errors = errors.map(|problem| placed(problem).in_locale(self.locale));
+        let errors: Vec<String> = errors.collect();
         for error in &errors {
             match self.at_load.contains(error) {
                 true => host.known_error()?,

@@ -1,7 +1,9 @@
 //! The serving process is killed, or a process is stopped (SIGSTOP): motors rest, programs are gone, and robots are served.
 
+use crate::diagrams::upload;
 use crate::rig::robot;
 use harness::{eventually, processes};
+use lang_diagram::sketch::Sketch;
 use nix::sys::signal::Signal;
 use std::time::{Duration, Instant};
 
@@ -143,4 +145,25 @@ fn a_terminal_cannot_stop_what_guards_motors() {
     assert!(!processes::is_stopped(daemon) && !processes::is_stopped(robot.guardian()));
     assert_eq!(robot.daemon(), daemon);
     assert_eq!(robot.end(), Some(0));
+}
+
+#[test]
+fn a_motor_that_is_away_while_the_tree_comes_back_is_driven_when_it_is_there() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let forward = [("Ports", "M1"), ("Power", "40")];
+    let forward = sketch.block("TrikV6EnginesForward", &forward);
+    let wait = sketch.block("Timer", &[("Delay", "30")]);
+    sketch.chain(&[start, forward, wait, forward]);
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "drive.qrs", &sketch.qrs().expect("a save"));
+    let [motor, away] = ["motors/M1", "away"].map(|name| robot.tree.join(name));
+    std::fs::rename(&motor, &away).expect("the motor goes");
+    client.send("run:drive.qrs");
+    client.until("info: M1: ");
+    std::fs::rename(&away, &motor).expect("the motor comes");
+    let value = motor.join("value");
+    let is_driven = || std::fs::read_to_string(&value).is_ok_and(|value| value.trim() == "40");
+    eventually("a motor that is driven", is_driven);
 }

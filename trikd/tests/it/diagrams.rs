@@ -341,8 +341,9 @@ fn each_mistake_of_a_diagram_is_told_once_with_its_block_and_place() {
             assert_eq!(told.len(), 2, "{told:#?}");
             assert!(told[0].starts_with("info: "), "{told:#?}");
             assert!(told[1].starts_with("error: main: "), "{told:#?}");
+            assert!(told[1].contains(" (100, 0): "), "{told:#?}");
             assert!(told[1].contains(" 1:3 "), "{told:#?}");
-            let loops = told.iter().filter(|line| line.contains(" Loop: "));
+            let loops = told.iter().filter(|line| line.contains(" Loop ("));
             assert_eq!(loops.count(), 1, "{told:#?}");
             assert!(told[0].contains(": main: "), "{told:#?}");
         }

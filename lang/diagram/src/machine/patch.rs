@@ -149,7 +149,7 @@ impl Version {
             true => Ok(warnings),
             false => {
                 let errors = errors.into_iter();
-                let errors = errors.map(|problem| located(&program, problem));
+                let errors = errors.map(|problem| program.on_sheet(problem));
                 Err(Refused::Mistakes(errors.collect()))
             }
         }
@@ -294,7 +294,7 @@ impl Machine {
             let node = moves.missed_by(thread)?;
             let mut problem = Problem::error(words::block_gone(&thread.name));
             problem.place = old.place(node);
-            Some((handle, located(old, problem)))
+            Some((handle, old.on_sheet(problem)))
         });
         found.collect()
     }
@@ -420,19 +420,6 @@ fn move_thread(thread: &mut Thread, moves: &Moves) {
     }
 }
 
-/// A problem whose block a person finds on the sheet: there may be many of the same type.
-fn located(program: &Program, mut problem: Problem) -> Problem {
-    let object = problem.place.object.as_deref();
-    let mut spots = program.spots.iter();
-    if let Some(spot) = spots.find(|spot| object == Some(&*spot.id))
-        && let Some(block) = &mut problem.place.block
-    {
-        let (x, y) = spot.position;
-        block.push_str(&format!(" ({x:.0}, {y:.0})"));
-    }
-    problem
-}
-
 /// Expressions that the old version did not have and that fight with the types that variables have by now.
 fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> {
     let known: HashSet<&str> = old.sources.iter().map(|text| &*text.text).collect();
@@ -452,7 +439,7 @@ fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> 
             }
             problem.place.property = Some(text.property.to_owned());
             problem.place.position = position;
-            found.push(located(new, problem));
+            found.push(new.on_sheet(problem));
         }
     }
     found.truncate(lang_text::limits::PROBLEMS);
