@@ -212,16 +212,6 @@ pub struct Question<'a> {
     pub default: &'a str,
 }
 
-impl Question<'_> {
-    /// What counts if nobody is there to answer: what the question proposes.
-    pub fn unanswered(&self) -> Answer {
-        match self.default {
-            "" => Answer::Cancelled,
-            proposed => Answer::Text(proposed.to_owned()),
-        }
-    }
-}
-
 /// A robot.
 pub trait Brick {
     /// Tells a device something. What the robot does not have is left out, as the original does.

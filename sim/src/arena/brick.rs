@@ -288,7 +288,7 @@ impl Brick for Handle<'_> {
         match (self.arena.answers.pop_front(), &mut self.arena.person) {
             (Some(text), _) => Answer::Text(text),
             (None, Some(person)) => person.ask(question),
-            (None, None) => question.unanswered(),
+            (None, None) => Answer::Cancelled,
         }
     }
 

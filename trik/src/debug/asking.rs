@@ -32,16 +32,6 @@ impl Asked {
         }
     }
 
-    /// What counts if nobody answers.
-    fn unanswered(&self) -> Answer {
-        let question = Question {
-            variable: &self.variable,
-            prompt: &self.prompt,
-            default: &self.default,
-        };
-        question.unanswered()
-    }
-
     /// Whether this is the same question, whatever was answered before.
     fn is_of(&self, other: &Self) -> bool {
         let key = |asked: &Self| {
@@ -63,12 +53,12 @@ impl Asked {
 /// Whether somebody is there to answer.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub(crate) enum Listener {
-    /// Nobody, from the beginning: the first question is told, and what it proposes counts, as in a run that is judged.
+    /// Nobody, from the beginning: a question has no answer, as in a run that is judged.
     #[default]
     Nobody,
     /// A person.
     Person,
-    /// Nobody any more, which was told: the same counts.
+    /// Nobody any more: what a question proposes counts.
     Gone,
 }
 
@@ -168,11 +158,12 @@ impl Inner {
             Listener::Person => self.ask_person(asked),
             Listener::Nobody => {
                 if !std::mem::replace(&mut self.has_missed, true) {
-                    self.missed = Some(asked.clone());
+                    self.missed = Some(asked);
                 }
-                asked.unanswered()
+                Answer::Cancelled
             }
-            Listener::Gone => asked.unanswered(),
+            Listener::Gone if asked.default.is_empty() => Answer::Cancelled,
+            Listener::Gone => Answer::Text(asked.default),
         }
     }
 
@@ -303,11 +294,11 @@ mod tests {
     }
 
     #[test]
-    fn without_a_person_what_a_question_proposes_counts() {
+    fn without_a_person_a_question_has_no_answer_or_what_it_proposes() {
         let mut asking = Asking::default();
-        assert_eq!(ask(&mut asking, "n"), text("1"));
+        assert_eq!(ask(&mut asking, "n"), Answer::Cancelled);
         assert_eq!(asking.missed().expect("a question").variable, "n");
-        assert_eq!(ask(&mut asking, "m"), Answer::Cancelled);
+        assert_eq!(ask(&mut asking, "n"), Answer::Cancelled);
         assert_eq!(asking.missed(), None, "once");
         asking.attend(Listener::Person);
         assert_eq!(ask(&mut asking, "n"), Answer::Waiting);

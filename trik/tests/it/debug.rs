@@ -140,17 +140,6 @@ fn a_block_that_asks_is_answered_by_the_next_line() {
     let told = said(&["debug", "bare.qrs", "--inputs", "answers.txt"], "c\nq\n");
     assert!(told.contains("(trik) c\n70\n"), "{told}");
     assert!(!told.contains("How many?"), "{told}");
-    // A run that is judged does the same without answers.
-    for (check, wanted) in [
-        (&["check", "ask.qrs"][..], "print: 10\n"),
-        (
-            &["check", "ask.qrs", "--inputs", "answers.txt"],
-            "print: 70\n",
-        ),
-    ] {
-        let told = said(check, "");
-        assert!(told.contains(wanted), "{told}");
-    }
     let limit = ["debug", "bare.qrs", "--time-limit", "1", "--language", "ru"];
     let told = said(&limit, "c\n");
     let nobody = "\u{43e}\u{442}\u{432}\u{435}\u{447}\u{430}\u{442}\u{44c} ";

@@ -126,7 +126,10 @@ impl Asking {
             number: self.count,
             until,
             answer: None,
-            default: question.unanswered(),
+            default: match question.default {
+                "" => Answer::Cancelled,
+                text => Answer::Text(text.to_owned()),
+            },
         });
     }
 

@@ -387,7 +387,7 @@ pub(super) const ROWS: &[Row] = &[
                 ),
                 property("prompt", ["Prompt", "Приглашение"], Raw, ""),
             ],
-            "Asks the user for a value; the answer is an expression. If nobody is there to answer, the default value counts. A link with the guard `cancel` is taken if there is no answer and no default value.",
+            "Asks the user for a value; the answer is an expression. A link with the guard `cancel` is taken if there is no answer.",
         )
     },
     Row {
