@@ -3,19 +3,16 @@
 //! Owns plain data, made by `lower` and run by `machine`, and what each operation is to everybody who only looks at
 //! programs: where it leads, its texts, its variable, what it waits for. Several machines may share one program.
 
-use std::collections::HashMap;
-use std::rc::Rc;
-
 use super::blocks::act::Effect;
 use super::blocks::wait::Measure;
 use super::blocks::{Act, Copied, Row, Type, Wait};
 use super::ports::{Kit, Port};
-use super::project;
 use lang_text::problem::{Place, Problem};
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A place in [`Program::nodes`].
 pub type Node = u32;
-
 /// A place in [`Program::sources`].
 pub type Source = u32;
 
@@ -358,12 +355,8 @@ impl Sign {
 impl Program {
     /// A problem with the place of its block on the sheet, if it has one.
     pub fn on_sheet(&self, problem: Problem) -> Problem {
-        let object = problem.place.object.as_deref();
-        let mut spots = self.spots.iter();
-        match spots.find(|spot| object == Some(&*spot.id)) {
-            Some(spot) => project::on_sheet(problem, spot.position),
-            None => problem,
-        }
+        let spots = self.spots.iter().map(|one| (&*one.id, one.position));
+        super::project::on_sheet(problem, spots)
     }
 
     /// How many nodes there are.

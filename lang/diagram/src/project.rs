@@ -115,9 +115,15 @@ pub struct Link {
     pub path: Vec<(f64, f64)>,
 }
 
-/// Says where the block of a problem is drawn, as `Timer (120, 40)`: a sheet may have many of the same type.
-pub(crate) fn on_sheet(mut problem: Problem, (x, y): (f64, f64)) -> Problem {
-    if let Some(block) = &mut problem.place.block {
+/// A problem with the place of its block on the sheet, as `Timer (120, 40)`: there may be many of the same type. `blocks` are
+/// those that it may be of, by their ids.
+pub(crate) fn on_sheet<'a>(
+    mut problem: Problem,
+    mut blocks: impl Iterator<Item = (&'a str, (f64, f64))>,
+) -> Problem {
+    let object = problem.place.object.as_deref();
+    let found = blocks.find(|(id, _)| object == Some(id));
+    if let (Some((_, (x, y))), Some(block)) = (found, &mut problem.place.block) {
         let place = format!(" ({x:.0}, {y:.0})");
         // It may have been said already.
         if !block.ends_with(&place) {
@@ -130,12 +136,8 @@ pub(crate) fn on_sheet(mut problem: Problem, (x, y): (f64, f64)) -> Problem {
 impl Project {
     /// A problem with the place of its block on the sheet, if it has one.
     pub fn on_sheet(&self, problem: Problem) -> Problem {
-        let object = problem.place.object.as_deref();
-        let mut blocks = self.diagrams.iter().flat_map(|one| &one.blocks);
-        match blocks.find(|block| object == Some(&*block.id)) {
-            Some(block) => on_sheet(problem, block.position),
-            None => problem,
-        }
+        let blocks = self.diagrams.iter().flat_map(|one| &one.blocks);
+        on_sheet(problem, blocks.map(|block| (&*block.id, block.position)))
     }
 
     /// The diagram that a call names by its logical id: the first one, as the editor has it.

@@ -1,8 +1,7 @@
 //! Tokens to a tree: a Pratt parser of the language as TRIK Studio has it.
 //!
 //! Its messages come in the order in which the real program's combinators give them, and stand where those stand: at
-//! the token that does not fit, at the last one when the text ends too early; only the first one at each place is told.
-//! Depth is limited.
+//! the token that does not fit, at the last one when the text ends too early. Depth is limited.
 
 use super::escape;
 use super::lexer::{Placed, Token, tokens};
@@ -29,8 +28,7 @@ pub fn parse(text: &str) -> (Tree, Vec<Fault>) {
         faults,
     };
     let root = parser.block();
-    // After a fault the rest was not looked at.
-    if root.is_ok() && parser.position < parser.tokens.len() {
+    if parser.position < parser.tokens.len() {
         parser.unexpected();
     }
     if parser.faults.is_empty() {
@@ -86,9 +84,9 @@ impl<'a> Parser<'a> {
     }
 
     fn fault_at(&mut self, reason: Reason, at: Position) -> Failed {
-        // What follows from a fault says nothing new where that stands, and nothing at all of a text that was given up.
+        // What follows from a fault is told as the real program tells it, but nothing of a text that was given up.
         let mut told = self.faults.iter();
-        let is_told = told.any(|fault| fault.at == at || fault.reason == Reason::TooDeep);
+        let is_told = told.any(|fault| fault.reason == Reason::TooDeep);
         if !is_told && self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
             self.faults.push(Fault::new(reason, at));
         }

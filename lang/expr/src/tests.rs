@@ -464,7 +464,6 @@ fn texts_that_cannot_be_read_say_where() {
     check(
         Compat::Studio,
         &[
-            (&["1 + )"], "1:5 Unexpected token \")\""),
             (&["(1"], "1:2 Expected \")\", got the end of the text"),
             (
                 &["x = "],
@@ -488,12 +487,12 @@ fn texts_that_cannot_be_read_say_where() {
             ),
             (
                 &["if x then"],
-                "1:1 Unexpected token \"if\". This word is reserved and stands in no expression: take a block for it, or another name.",
+                "1:1 Unexpected token. \"if\" cannot stand here. This word is reserved and stands in no expression: take a block for it, or another name.",
             ),
             (&["..."], "1:1 This construction is not supported yet"),
             (
                 &["x.5"],
-                "1:3 Expected \"identifier\", got \"integer literal\"",
+                "1:3 Expected \"identifier\", got \"integer literal\" | 1:3 Unexpected token. \"5\" cannot stand here.",
             ),
         ],
     );

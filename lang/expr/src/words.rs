@@ -217,7 +217,7 @@ impl Reason {
         match self {
             Self::TextTooLong => "The text is too long".into(),
             Self::UnknownSymbols(text) => format!("Unknown sequence of symbols: {}", short(text)),
-            Self::UnexpectedToken(text, _) => format!("Unexpected token {}", quoted(text)),
+            Self::UnexpectedToken(..) => "Unexpected token".into(),
             Self::UnexpectedEnd => "Unexpected end of input".into(),
             Self::Expected(wanted, got) => format!("Expected \"{wanted}\", got \"{got}\""),
             Self::ExpectedAtEnd(wanted) => {
@@ -294,10 +294,8 @@ impl Reason {
                 ". Is the closing quote missing?".into()
             }
             Self::UnknownSymbols(text) if text.starts_with('!') => ". Write 'not' instead of '!'.".into(),
-            Self::UnexpectedToken(_, Meant::Sign(sign)) => format!(". Did you mean '{sign}'?"),
-            Self::UnexpectedToken(_, Meant::Block) => {
-                ". This word is reserved and stands in no expression: take a block for it, or another name."
-                    .into()
+            Self::UnexpectedToken(text, may_be) => {
+                format!(". {} cannot stand here.{}", quoted(text), meant(*may_be).english)
             }
             Self::UnexpectedEnd => ". Something is missing after this.".into(),
             Self::TooDeep => {
@@ -322,7 +320,6 @@ impl Reason {
             Self::StoreFull => ". Does a table or text grow without end?".into(),
             Self::TooMuchWork => ". Are very long tables compared or copied?".into(),
             Self::UnknownSymbols(_)
-            | Self::UnexpectedToken(_, Meant::Unknown)
             | Self::Expected(..)
             | Self::ExpectedAtEnd(_)
             | Self::NotSupportedYet
@@ -361,8 +358,8 @@ impl Reason {
                 limits::EXPRESSION_TEXT_MAX
             ),
             Self::UnknownSymbols(text) => unknown_in_russian(text),
-            Self::UnexpectedToken(text, meant) => {
-                format!("Неожиданная лексема {}{}", quoted(text), meant_in_russian(*meant))
+            Self::UnexpectedToken(text, may_be) => {
+                format!("Неожиданная лексема. {} здесь не может стоять.{}", quoted(text), meant(*may_be).russian)
             }
             Self::UnexpectedEnd => "Текст неожиданно кончился: после этого места чего-то не хватает".into(),
             Self::Expected(wanted, got) => {
@@ -513,15 +510,18 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// What may be meant, after the name of the token.
-fn meant_in_russian(meant: Meant) -> String {
+/// What may be meant, as a sentence after what is wrong.
+fn meant(meant: Meant) -> Words {
     match meant {
-        Meant::Unknown => String::new(),
-        Meant::Sign(sign) => format!(". Может быть, «{sign}»?"),
-        Meant::Block => {
-            ". Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя."
-                .into()
-        }
+        Meant::Unknown => Words::new("", ""),
+        Meant::Sign(sign) => Words::new(
+            format!(" Did you mean '{sign}'?"),
+            format!(" Может быть, «{sign}»?"),
+        ),
+        Meant::Block => Words::new(
+            " This word is reserved and stands in no expression: take a block for it, or another name.",
+            " Это слово зарезервировано и в выражениях не стоит: возьмите для него блок или другое имя.",
+        ),
     }
 }
 
