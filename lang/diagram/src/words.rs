@@ -428,6 +428,14 @@ pub(super) fn not_finite(variable: &str) -> Words {
     )
 }
 
+/// What a person assigns is nothing, or more than one value.
+pub(super) fn one_expression(variable: &str) -> Words {
+    Words::new(
+        format!("one expression is wanted after {variable}=, as in {variable}=2 + 3"),
+        format!("после {variable}= нужно одно выражение, например {variable}=2 + 3"),
+    )
+}
+
 pub(super) fn assigns() -> Words {
     Words::new(
         "An expression that is only looked at cannot assign; == compares",

@@ -139,7 +139,7 @@ pub(super) fn set(
     match session.assign(name, expression, robot, watch) {
         Ok(()) => {
             let value = session.machine().variable(name);
-            let value = value.map_or_else(String::new, |value| value.printed().to_string());
+            let value = value.map_or_else(String::new, |value| value.brief());
             Answer::changed(name, &format!("{name} = {value}"))
         }
         Err(why) => Answer::unchanged(name, &why.in_locale(locale)),

@@ -12,7 +12,7 @@ use crate::check::aside;
 use crate::ports::Port;
 use crate::program::{AssignedKind, Leads, Node, Op};
 use lang_expr::reserved::{SENSORS, SensorIndex};
-use lang_expr::{Outside, Value, Wanted};
+use lang_expr::{Outside, Source, Value, Wanted};
 use lang_text::problem::Problem;
 
 /// A thread at a moment.
@@ -280,7 +280,14 @@ impl Machine {
         if let Some(problem) = self.known(|known| aside::no_assignment(known, variable)) {
             return Err(vec![problem]);
         }
-        // Its errors have columns of this text. In brackets it is one expression and no statement after it.
+        let source = Source::new(text, Wanted::Statements);
+        let second = source.tree().statements().get(1).copied();
+        if text.trim().is_empty() || second.is_some() {
+            let mut problem = Problem::error(words::one_expression(variable));
+            problem.place.position = second.map(|part| source.tree().place(part));
+            return Err(vec![problem]);
+        }
+        // Its errors have columns of this text. In brackets it is no assignment.
         self.compute_aside(text)?;
         let opening = format!("{variable} = (");
         let statement = format!("{opening}{text})");
