@@ -25,11 +25,15 @@ const CONFIG: &str = "
     }";
 
 fn mounted() -> Option<(I2cBus, Mount)> {
+    mounted_with(CONFIG)
+}
+
+fn mounted_with(config: &str) -> Option<(I2cBus, Mount)> {
     let board = Board::new();
     let bus = I2cBus::start(&board.path("i2c-2"), MSP);
     bus.behaviour().present.push(0x33);
     bus.behaviour().register_bytes.insert(0x33, 2);
-    mount_on(board, CONFIG).map(|m| (bus, m))
+    mount_on(board, config).map(|m| (bus, m))
 }
 
 /// What was asked of a register, without the background.
@@ -157,7 +161,12 @@ fn a_bus_that_goes_and_comes_back_is_used_again() {
 
 #[test]
 fn a_bus_that_hangs_is_given_up_in_time() {
-    let Some((bus, m)) = mounted() else { return };
+    // Polls that wait for the bus may fill its line before the read comes, which is EBUSY at once then.
+    let is_quiet = |line: &&str| !line.contains("poll_ms");
+    let quiet: Vec<&str> = CONFIG.lines().filter(is_quiet).collect();
+    let Some((bus, m)) = mounted_with(&quiet.join("\n")) else {
+        return;
+    };
     bus.behaviour().is_dead = true;
     let begin = std::time::Instant::now();
     assert_eq!(m.errno("stranger/value"), libc::ETIMEDOUT);
