@@ -103,8 +103,6 @@ native=()
 for module in fuzz trik_lua::drive trik_lua::inputs trik_lua::outputs trik_lua::robots trik_lua::streams trik_lua::tables; do
     native+=(--skip "$module::")
 done
-# Its converter computes for a while on purpose, of which the emulated processor makes minutes.
-native+=(--skip a_reader_that_goes_while_lines_are_converted_stops_the_sensor)
 
 mount_tests() {
     local program=$out/robot/bin/trikfs

@@ -229,6 +229,8 @@ pub const CHOICES_MAX: usize = 8;
 pub const CHOICE_CHARS_MAX: usize = 40;
 /// Bytes of a line that is typed at `trik debug`.
 pub const DEBUG_LINE_BYTES: usize = 16_384;
+/// Bytes of one that is edited in a terminal, which is drawn again with each letter once it is longer than the screen is wide.
+pub const DEBUG_TYPED_BYTES: usize = 1000;
 /// Lines that can be had back there.
 pub const DEBUG_HISTORY_LINES: usize = 1000;
 /// Requests of an editor that debugs which wait for their turn.

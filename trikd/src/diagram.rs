@@ -92,7 +92,7 @@ enum Loaded {
     /// A machine with diagrams of control flow.
     Diagram(Box<Machine>),
     /// A data-flow program.
-    Flow(Rc<lang_dataflow::program::Program>),
+    Flow(Box<(Rc<lang_dataflow::program::Program>, Source)>),
 }
 
 impl Engine for Diagram {
@@ -106,8 +106,8 @@ impl Engine for Diagram {
         let mut watch = Watch::new(self.locale);
         let machine = match self.load(&path, host, &mut watch)? {
             Loaded::Diagram(machine) => *machine,
-            Loaded::Flow(program) => {
-                return flow::run(program, is_debugged, &mut robot, &mut watch, host);
+            Loaded::Flow(flow) => {
+                return flow::run(*flow, is_debugged, &mut robot, &mut watch, host);
             }
         };
         let mut diagram = Debugging::new(machine, self.locale);
@@ -134,12 +134,12 @@ impl Diagram {
         let bytes = read_save(path).map_err(failed)?;
         if ending(path) == source::ENDING {
             let source = Source::of_text(bytes, self.locale).map_err(failed)?;
-            return self.ready(&source, watch, host).map_err(failed);
+            return self.ready(source, watch, host).map_err(failed);
         }
         let opened = opened(&bytes, self.locale).map_err(failed)?;
         if language(&opened.save) == Language::Dataflow {
             let source = Source::of_save(opened);
-            return self.ready(&source, watch, host).map_err(failed);
+            return self.ready(source, watch, host).map_err(failed);
         }
         let lowered = lower(&opened.project, World::Robot)
             .map_err(|problem| opened.project.on_sheet(problem))
@@ -161,7 +161,7 @@ impl Diagram {
     }
 
     /// A data-flow program that has nothing wrong with it; warnings are told.
-    fn ready(&self, source: &Source, watch: &mut Watch, host: &Host) -> Result<Loaded, NoDiagram> {
+    fn ready(&self, source: Source, watch: &mut Watch, host: &Host) -> Result<Loaded, NoDiagram> {
         let checked = lang_dataflow::check::check(&source.project);
         let all = [&source.problems[..], &checked.problems].concat();
         let errors = source.errors(&all, self.locale);
@@ -169,7 +169,7 @@ impl Diagram {
             return Err(NoDiagram::Problems(errors));
         }
         watch.tell_warnings(source.warnings(&all, self.locale), host);
-        Ok(Loaded::Flow(Rc::new(checked.program)))
+        Ok(Loaded::Flow(Box::new((Rc::new(checked.program), source))))
     }
 }
 

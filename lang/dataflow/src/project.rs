@@ -4,7 +4,8 @@
 
 use crate::blocks::Row;
 use crate::words;
-use lang_text::problem::Words;
+use lang_diagram::project::on_sheet;
+use lang_text::problem::{Problem, Words};
 use std::collections::{BTreeMap, HashMap};
 
 /// A whole project.
@@ -146,6 +147,12 @@ pub(crate) fn main_named<'a>(
 }
 
 impl Project {
+    /// A problem with the place of its block on the sheet, if it has one.
+    pub fn on_sheet(&self, problem: Problem) -> Problem {
+        let blocks = self.diagrams.iter().flat_map(|one| &one.blocks);
+        on_sheet(problem, blocks.map(|block| (&*block.id, block.position)))
+    }
+
     /// Has another main diagram run, by its name.
     ///
     /// # Errors

@@ -156,7 +156,7 @@ pub(crate) struct Env<'a> {
 impl Machine {
     /// A program before its first step.
     pub fn new(program: Rc<Program>, options: Options) -> Self {
-        let formulas = Formulas::new(&program, options.compat);
+        let formulas = Formulas::new(&program, options);
         Self {
             loops: Loops::new(program.loops, options.compat),
             tokens: vec![0; program.joins.len()],

@@ -117,7 +117,7 @@ pub struct Link {
 
 /// A problem with the place of its block on the sheet, as `Timer (120, 40)`: there may be many of the same type. `blocks` are
 /// those that it may be of, by their ids.
-pub(crate) fn on_sheet<'a>(
+pub fn on_sheet<'a>(
     mut problem: Problem,
     mut blocks: impl Iterator<Item = (&'a str, (f64, f64))>,
 ) -> Problem {

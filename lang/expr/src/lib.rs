@@ -10,9 +10,9 @@
 
 mod advice;
 mod analyse;
-mod bounded;
 mod call;
 mod code;
+mod constant;
 mod elements;
 mod escape;
 mod flat;
@@ -31,7 +31,7 @@ pub mod value;
 pub mod words;
 
 pub use advice::{explained, refused};
-pub use bounded::constant;
+pub use constant::constant;
 pub use escape::{escape, unescape};
 pub use names::{Kind, Names, Slot};
 pub use reserved::Kit;
@@ -320,7 +320,7 @@ pub fn evaluate_to(
                 None => *into = run.value(root),
             },
             Wanted::Bool => *into = Value::Bool(run.truth(root)),
-            Wanted::Int => *into = Value::Int(run.bounded(root)),
+            Wanted::Int => *into = Value::Int(run.whole_of_block(root)),
             Wanted::Float => *into = Value::Float(run.number(root)),
             Wanted::Text => *into = run.value(root).into_text(),
             Wanted::List => {
@@ -342,14 +342,17 @@ pub fn evaluate_bool(
     run(source, names, store, outside, |run, root| run.truth(root))
 }
 
-/// Runs a text for a whole number, which beyond 32 bits stays at the end of the range; takes no memory for numbers.
+/// Runs a text for a whole number, which beyond 32 bits stays at the end of the range, unless
+/// [`Names::with_low_bits`]; takes no memory for numbers.
 pub fn evaluate_int(
     source: &Source,
     names: &Names,
     store: &mut Store,
     outside: &mut dyn Outside,
 ) -> Result<i32, Vec<Problem>> {
-    run(source, names, store, outside, |run, root| run.bounded(root))
+    run(source, names, store, outside, |run, root| {
+        run.whole_of_block(root)
+    })
 }
 
 #[inline]

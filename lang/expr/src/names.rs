@@ -64,6 +64,8 @@ pub struct Names {
     compat: Compat,
     /// Whether what is no number is an error where a number is needed, instead of 0.
     pub(super) is_strict: bool,
+    /// Whether a block gets the low bits of a number beyond 32 bits, instead of the end of the range.
+    pub(super) keeps_low_bits: bool,
     /// Whether an integer variable becomes a float one by an assignment; not in the mode of static languages.
     pub(super) widens: bool,
     epoch: u32,
@@ -82,6 +84,7 @@ impl Names {
             types: Types::new(compat == Compat::Fixed),
             compat,
             is_strict: false,
+            keeps_low_bits: false,
             widens: true,
             epoch: 0,
             readings: 0,
@@ -115,6 +118,15 @@ impl Names {
     pub fn strict(self) -> Self {
         Self {
             is_strict: true,
+            ..self
+        }
+    }
+
+    /// The same, where a block gets the low bits of a number beyond 32 bits, as the real program's cast gives them.
+    #[must_use]
+    pub fn with_low_bits(self) -> Self {
+        Self {
+            keeps_low_bits: true,
             ..self
         }
     }

@@ -38,6 +38,38 @@ pub(super) struct Run<'a> {
     pub(super) faults: Vec<Fault>,
 }
 
+/// What a number beyond 32 bits is as a whole one.
+trait Beyond {
+    fn number(number: f64) -> i32;
+    fn value(value: &Value) -> i32;
+}
+
+/// Its low bits, as the real program's cast has it.
+struct LowBits;
+
+impl Beyond for LowBits {
+    fn number(number: f64) -> i32 {
+        round(number)
+    }
+
+    fn value(value: &Value) -> i32 {
+        value.to_int()
+    }
+}
+
+/// The end of the range: no power and no delay becomes another one by its size.
+struct EndOfRange;
+
+impl Beyond for EndOfRange {
+    fn number(number: f64) -> i32 {
+        Value::Float(number).to_bounded_int()
+    }
+
+    fn value(value: &Value) -> i32 {
+        value.to_bounded_int()
+    }
+}
+
 impl<'a> Run<'a> {
     pub(super) fn new(
         code: &'a Code,
@@ -177,13 +209,25 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// As a whole number.
+    /// As a whole number, with what is beyond 32 bits cut off.
     pub(super) fn whole(&mut self, id: Id) -> i32 {
+        self.whole_with::<LowBits>(id)
+    }
+
+    /// As the whole number that a block gets.
+    pub(super) fn whole_of_block(&mut self, id: Id) -> i32 {
+        match self.names.keeps_low_bits {
+            true => self.whole_with::<LowBits>(id),
+            false => self.whole_with::<EndOfRange>(id),
+        }
+    }
+
+    fn whole_with<B: Beyond>(&mut self, id: Id) -> i32 {
         let (operator, left, right) = match self.code.ops[id as usize] {
             Op::Int(number) => return number,
             Op::Variable(slot) => {
                 return match self.store.get(slot) {
-                    Some(value) => value.to_int(),
+                    Some(value) => B::value(value),
                     None => {
                         self.uninitialized(slot, id);
                         0
@@ -193,7 +237,7 @@ impl<'a> Run<'a> {
             Op::Sensor(sensor) => return self.outside.sensor(sensor).to_int(),
             Op::BitNot(operand) => return !self.whole(operand),
             Op::Float(_) | Op::Minus(_) | Op::MinusNarrow(_) | Op::Steps(_) => {
-                return round(self.number(id));
+                return B::number(self.number(id));
             }
             Op::Binary(operator, left, right) => (operator, left, right),
             Op::Nil
@@ -212,14 +256,14 @@ impl<'a> Run<'a> {
             | Op::Broken(_) => {
                 let value = self.value(id);
                 self.look_at_number(&value, id);
-                return value.to_int();
+                return B::value(&value);
             }
         };
         match operator {
             Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide | Binary::Power => {
-                round(self.number(id))
+                B::number(self.number(id))
             }
-            Binary::Join => self.value(id).to_int(),
+            Binary::Join => B::value(&self.value(id)),
             Binary::DivideWhole => self.divided(id, left, right),
             Binary::Modulo => self.rest(id, left, right),
             Binary::BitAnd => self.bits(left, right, |left, right| left & right),

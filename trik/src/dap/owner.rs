@@ -9,7 +9,7 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 /// have no process any more, and then the kernel shows 0 as its user.
 const ESTABLISHED: &str = "01";
 
-/// Who has made a connection.
+/// Whose process has made a connection.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) enum Owner {
     /// A process of this user.
@@ -20,7 +20,7 @@ pub(super) enum Owner {
     Unknown,
 }
 
-/// Whose process has made this connection.
+/// The owner of a connection of a client.
 pub(super) fn of(peer: SocketAddr, own: SocketAddr) -> Owner {
     // A socket of IPv6 may have made a connection of IPv4.
     let tables = ["/proc/net/tcp", "/proc/net/tcp6"];

@@ -13,20 +13,21 @@ enum About {
     Thread,
     /// An expression, or a variable.
     Variables,
-    /// One of these words, with a blank between two.
+    /// One of these words, with a stroke between two.
     Words(&'static str),
 }
 
+/// What its help says that follows it.
 fn about(command: &str) -> About {
-    match command {
-        "break" | "b" | "tbreak" | "tb" | "until" | "u" | "advance" | "list" | "l" | "dprintf" => {
-            About::Place
-        }
-        "next" | "n" | "step" | "s" | "finish" | "fin" | "hold" | "release" => About::Thread,
-        "print" | "p" | "inspect" | "set" | "watch" => About::Variables,
-        "info" | "i" => About::Words("threads variables breakpoints"),
-        "errors" => About::Words("stop go"),
-        "motors" => About::Words("rest keep"),
+    let more = words::follows(command);
+    let first = more.trim_start_matches('[');
+    let first = first.split([' ', ']', '=']).next().unwrap_or_default();
+    match first {
+        "LINE" => About::Place,
+        "THREAD" => About::Thread,
+        "NAME" | "EXPRESSION" => About::Variables,
+        words if words.contains('|') => About::Words(words),
+        // A number, a time, or nothing.
         _ => About::Nothing,
     }
 }
@@ -56,7 +57,13 @@ impl Known {
 pub(super) fn candidates(line: &str, known: &Known) -> (usize, Vec<String>) {
     let start = line.len() - line.trim_start().len();
     let Some(end) = line[start..].find(char::is_whitespace) else {
-        return (start, fitting(&line[start..], words::commands()));
+        let commands = fitting(&line[start..], words::commands());
+        // What follows is typed at once.
+        let open = |word: String| match words::follows(&word) {
+            "" => word,
+            _ => word + " ",
+        };
+        return (start, commands.into_iter().map(open).collect());
     };
     let command = &line[start..start + end];
     let rest = line[start + end..].trim_start();
@@ -68,7 +75,7 @@ pub(super) fn candidates(line: &str, known: &Known) -> (usize, Vec<String>) {
         About::Place => (from, fitting(rest, names(&known.places))),
         About::Thread => (from, fitting(rest, names(&known.threads))),
         About::Variables => of_variables(line, known),
-        About::Words(all) => (from, fitting(rest, all.split(' '))),
+        About::Words(all) => (from, fitting(rest, all.split('|'))),
     }
 }
 
@@ -114,7 +121,8 @@ mod tests {
                     "reverse-step",
                 ][..],
             ),
-            ("  br", 2, &["break"]),
+            ("  br", 2, &["break "]),
+            ("sta", 0, &["start"]),
             ("b w", 2, &["walls", "wheels"]),
             ("tbreak Keep to t", 7, &["Keep to the wall/turn"]),
             ("b wheels if ga", 12, &["gain", "gate"]),
@@ -124,6 +132,9 @@ mod tests {
             ("hold o", 5, &["other"]),
             ("info v", 5, &["variables"]),
             ("motors ", 7, &["keep", "rest"]),
+            ("info ", 5, &["breakpoints", "threads", "variables"]),
+            ("release m", 8, &["main"]),
+            ("d ", 2, &[]),
             ("continue w", 10, &[]),
             ("", 0, &[]),
         ] {

@@ -13,7 +13,10 @@ use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
 use rustyline::history::MemHistory;
 use rustyline::validate::Validator;
-use rustyline::{CompletionType, Config, Context, Editor, ExternalPrinter, Helper};
+use rustyline::{
+    Cmd, CompletionType, ConditionalEventHandler, Config, Context, Editor, Event, EventContext,
+    EventHandler, ExternalPrinter, Helper, KeyCode, KeyEvent, Modifiers, RepeatCount,
+};
 use std::io::{self, BufRead, Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -26,6 +29,8 @@ pub(super) const PROMPT: &str = "(trik) ";
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub(super) enum Heard {
     Line(String),
+    /// One of this many bytes or more, which is left out.
+    TooLong(usize),
     /// Ctrl-C where a command was being typed.
     Interrupt,
 }
@@ -147,6 +152,7 @@ fn edited() -> Option<Lines> {
     let history = MemHistory::with_config(&config);
     let mut editor = Editor::with_history(config, history).ok()?;
     editor.set_helper(Some(Names(known.clone())));
+    editor.bind_sequence(Event::Any, EventHandler::Conditional(Box::new(Bound)));
     let printer = Box::new(editor.create_external_printer().ok()?);
     let (wanted, asked) = channel();
     let (sender, heard) = sync_channel(1);
@@ -177,20 +183,17 @@ fn edited() -> Option<Lines> {
 /// Reads a command that is edited; whether more can come.
 fn command(editor: &mut Editor<Names, MemHistory>, sender: &SyncSender<Heard>) -> bool {
     let heard = match editor.readline(PROMPT) {
-        Ok(line) if line.len() < limits::DEBUG_LINE_BYTES => {
+        Ok(line) if line.len() < limits::DEBUG_TYPED_BYTES => {
             // What cannot be kept is typed again.
             let _ = editor.add_history_entry(line.as_str());
             Heard::Line(line)
         }
-        Ok(_) => Heard::Line(TOO_LONG.to_owned()),
+        Ok(_) => Heard::TooLong(limits::DEBUG_TYPED_BYTES),
         Err(ReadlineError::Interrupted) => Heard::Interrupt,
         Err(_) => return false,
     };
     sender.send(heard).is_ok()
 }
-
-/// What is taken for a line that is too long.
-const TOO_LONG: &str = "(a line that is too long)";
 
 /// Reads a line as it comes; whether more can come.
 fn plain(sender: &SyncSender<Heard>) -> bool {
@@ -204,14 +207,29 @@ fn plain(sender: &SyncSender<Heard>) -> bool {
     }
     if line.len() == limits::DEBUG_LINE_BYTES && !line.ends_with(b"\n") {
         // What is left of it is no line of its own.
-        if input.skip_until(b'\n').is_err() {
-            return false;
-        }
-        line = TOO_LONG.as_bytes().to_vec();
+        let is_at_end = input.skip_until(b'\n').is_err();
+        return sender.send(Heard::TooLong(line.len())).is_ok() && !is_at_end;
     }
     let line = String::from_utf8_lossy(&line);
     let line = line.trim_end_matches(['\n', '\r']).to_owned();
     sender.send(Heard::Line(line)).is_ok()
+}
+
+/// Ends a line that is being typed where it is too long: each further letter would draw all of it again.
+struct Bound;
+
+impl ConditionalEventHandler for Bound {
+    fn handle(
+        &self,
+        event: &Event,
+        _: RepeatCount,
+        _: bool,
+        context: &EventContext<'_>,
+    ) -> Option<Cmd> {
+        let letter = |key: &KeyEvent| matches!(key, KeyEvent(KeyCode::Char(_), Modifiers::NONE));
+        let is_letter = event.get(0).is_some_and(letter);
+        (is_letter && context.line().len() >= limits::DEBUG_TYPED_BYTES).then_some(Cmd::Noop)
+    }
 }
 
 /// Completes names.

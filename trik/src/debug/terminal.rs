@@ -156,6 +156,10 @@ impl<'a> Terminal<'a> {
         loop {
             match self.lines.next(TURN) {
                 Ok(Heard::Line(line)) => return Ok(Some(line)),
+                Ok(Heard::TooLong(bytes)) => {
+                    self.says(words::too_long(bytes))?;
+                    self.prompt()?;
+                }
                 Ok(Heard::Interrupt) => {
                     self.says(words::ends_by_quit())?;
                     self.prompt()?;
@@ -323,6 +327,10 @@ impl<'a> Terminal<'a> {
         self.lines.ask(Wanted::Answer);
         let line = match self.lines.next(Duration::ZERO) {
             Ok(Heard::Line(line)) => Some(line),
+            Ok(Heard::TooLong(bytes)) => {
+                self.says(words::too_long(bytes))?;
+                return self.show_question();
+            }
             Ok(Heard::Interrupt) | Err(RecvTimeoutError::Timeout) => return Ok(()),
             Err(RecvTimeoutError::Disconnected) => None,
         };

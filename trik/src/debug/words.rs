@@ -360,14 +360,29 @@ pub(super) const ROWS: [Row; 28] = [
 ];
 
 /// Commands that are in the help of another one.
-const BESIDE: [&str; 4] = ["backtrace", "enable", "help", "release"];
+const BESIDE: [(&str, &str); 4] = [
+    ("backtrace", ""),
+    ("enable", "NUMBER"),
+    ("help", ""),
+    ("release", "THREAD"),
+];
 
 /// All commands by their long words.
 pub(super) fn commands() -> impl Iterator<Item = &'static str> {
     let rows = ROWS
         .iter()
         .map(|row| row.words.split(' ').next().unwrap_or_default());
-    rows.chain(BESIDE)
+    rows.chain(BESIDE.map(|(word, _)| word))
+}
+
+/// What is typed after a command, as help shows it; empty: nothing, or there is no such command.
+pub(super) fn follows(command: &str) -> &'static str {
+    let rows = ROWS.iter().map(|row| (row.words, row.more));
+    let found = rows.chain(BESIDE).find(|(words, _)| {
+        let mut words = words.split(' ');
+        words.any(|word| word == command)
+    });
+    found.map_or("", |(_, more)| more)
 }
 
 /// Commands after which nothing comes.

@@ -60,6 +60,8 @@ impl Trace for Heard<'_> {
 /// A program that runs, with its debugger.
 struct Flow {
     desk: Desk,
+    /// What it was made of: where its blocks are.
+    source: Source,
     motors: Motors,
     /// What happens at its blocks, while somebody looks or records.
     diary: Option<Diary>,
@@ -72,7 +74,7 @@ struct Flow {
 
 /// Steps until the program has ended or the daemon is gone; `is_debugged`: it stops before its first block.
 pub(super) fn run(
-    program: Rc<Program>,
+    (program, source): (Rc<Program>, Source),
     is_debugged: bool,
     robot: &mut Robot<'_>,
     watch: &mut Watch,
@@ -84,6 +86,7 @@ pub(super) fn run(
             watch.locale(),
             limits::DEBUG_HISTORY_BYTES,
         ),
+        source,
         motors: Motors::default(),
         diary: None,
         warned: 0,
@@ -121,14 +124,15 @@ impl Flow {
             self.motors.settle(self.desk.is_at_rest(), robot);
             let warnings = self.desk.machine().warnings();
             for problem in warnings.iter().skip(self.warned) {
-                host.info(&problem.in_locale(watch.locale()))?;
+                host.info(&self.source.line(problem, watch.locale()))?;
             }
             self.warned = warnings.len();
             let is_over = status != Status::Running;
-            let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
+            let program = (self.desk.machine(), &self.source);
+            let diary = self.diary.as_mut();
             match is_over {
-                true => watch.last_of_flow(machine, diary, now, host)?,
-                false => watch.report_flow(machine, diary, now, host)?,
+                true => watch.last_of_flow(program, diary, now, host)?,
+                false => watch.report_flow(program, diary, now, host)?,
             }
             self.report(now, is_over, host)?;
             if is_over {
@@ -308,8 +312,8 @@ impl Flow {
         };
         // Blocks have other numbers then.
         if self.diary.as_ref().is_some_and(Diary::has_news) {
-            let (machine, diary) = (self.desk.machine(), self.diary.as_mut());
-            watch.last_of_flow(machine, diary, now, host)?;
+            let program = (self.desk.machine(), &self.source);
+            watch.last_of_flow(program, self.diary.as_mut(), now, host)?;
         }
         let count = ready.count;
         let answer = self.patch(ready, robot, watch, host);
@@ -342,6 +346,7 @@ impl Flow {
                 // It keeps those that there were.
                 self.warned = self.desk.machine().warnings().len();
                 watch.tell_warnings(warnings, host);
+                self.source = source;
                 Answer::changed(&ready.name, &patched.to_string())
             }
             Err(why) => Answer::unchanged(&ready.name, &explained(&why, &source, ready.locale)),

@@ -19,15 +19,13 @@ impl<T> Parts<T> {
     }
 
     /// The part at a port, which is looked for if that is due.
-    pub(super) fn get(&mut self, port: Port, find: impl FnOnce() -> Option<T>) -> Option<&T> {
-        let is_due = match self.0.get(&port) {
-            Some(Ok(_)) => false,
-            Some(Err(looked)) => looked.elapsed() >= Duration::from_millis(limits::PART_LOOK_MS),
-            None => true,
-        };
-        if is_due {
-            self.0.insert(port, find().ok_or_else(Instant::now));
+    pub(super) fn get(&mut self, port: Port, find: impl Fn() -> Option<T>) -> Option<&T> {
+        let look = || find().ok_or_else(Instant::now);
+        let part = self.0.entry(port).or_insert_with(look);
+        let again = Duration::from_millis(limits::PART_LOOK_MS);
+        if part.as_ref().is_err_and(|looked| looked.elapsed() >= again) {
+            *part = look();
         }
-        self.0.get(&port)?.as_ref().ok()
+        part.as_ref().ok()
     }
 }

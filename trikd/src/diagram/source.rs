@@ -92,21 +92,27 @@ impl Source {
         severities.zip(self.lines(shown, locale)).collect()
     }
 
-    /// A line for each problem; of a text it begins with line and column.
+    /// The line of one problem, as [`Source::lines`] has it.
+    pub fn line(&self, problem: &Problem, locale: Locale) -> String {
+        let lines = self.lines(std::slice::from_ref(problem), locale);
+        lines.into_iter().next().unwrap_or_default()
+    }
+
+    /// A line for each problem; of a text it begins with line and column, of a save it has the place of the block on its sheet.
     pub fn lines(&self, problems: &[Problem], locale: Locale) -> Vec<String> {
         let places = match &self.text {
             Some(text) => Places::of(text, &self.project).locate(problems),
             None => vec![None; problems.len()],
         };
-        let line = |(problem, at)| line(problem, at, locale);
+        let line = |(problem, at): (&Problem, Option<Position>)| match at {
+            Some(at) => in_text(problem, at, locale),
+            None => self.project.on_sheet(problem.clone()).in_locale(locale),
+        };
         problems.iter().zip(places).map(line).collect()
     }
 }
 
-fn line(problem: &Problem, at: Option<Position>, locale: Locale) -> String {
-    let Some(at) = at else {
-        return problem.in_locale(locale);
-    };
+fn in_text(problem: &Problem, at: Position, locale: Locale) -> String {
     let problem = problem.without_position();
     format!("{}:{} {}", at.line, at.column, problem.in_locale(locale))
 }

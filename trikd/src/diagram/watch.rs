@@ -3,6 +3,7 @@
 //! Owns the two forms: a line for people, and a JSON object for programs. Told at most every [`limits::WATCH_MS`], and only
 //! while somebody looks; errors are always told at once.
 
+use super::source::Source;
 use crate::host::Host;
 use crate::limits;
 use lang_dataflow::diary::Diary;
@@ -75,7 +76,8 @@ impl Watch {
 
     /// Tells what is new, if it is time.
     pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
-        let errors = self.tell_errors(host, |problem| machine.program().on_sheet(problem))?;
+        let told = |problem, locale| machine.program().on_sheet(problem).in_locale(locale);
+        let errors = self.tell_errors(host, told)?;
         let held = match self.is_wanted {
             true => held(machine),
             false => Vec::new(),
@@ -102,13 +104,14 @@ impl Watch {
     /// happened at its blocks.
     pub(super) fn report_flow(
         &mut self,
-        machine: &lang_dataflow::machine::Machine,
+        (machine, source): (&lang_dataflow::machine::Machine, &Source),
         mut diary: Option<&mut Diary>,
         now: u32,
         host: &Host,
     ) -> io::Result<()> {
         let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
-        let errors = self.tell_errors(host, |problem| problem)?;
+        let told = |problem, locale| source.line(&problem, locale);
+        let errors = self.tell_errors(host, told)?;
         let is_news = self.is_new || self.has_moved || has_news;
         if !self.is_told(is_news, now, &errors) {
             return Ok(());
@@ -152,7 +155,7 @@ impl Watch {
     /// The same at once, for the last time before the program ends, or becomes another one.
     pub(super) fn last_of_flow(
         &mut self,
-        machine: &lang_dataflow::machine::Machine,
+        program: (&lang_dataflow::machine::Machine, &Source),
         mut diary: Option<&mut Diary>,
         now: u32,
         host: &Host,
@@ -164,7 +167,7 @@ impl Watch {
             if let Some(diary) = &mut diary {
                 diary.is_last();
             }
-            self.report_flow(machine, diary.as_deref_mut(), now, host)?;
+            self.report_flow(program, diary.as_deref_mut(), now, host)?;
             let has_news = diary.as_ref().is_some_and(|diary| diary.has_news());
             if !has_news && self.had_variables {
                 break;
@@ -199,15 +202,14 @@ impl Watch {
         }
     }
 
-    /// Errors since the last time, which are told at once, but for faults that were told at load. `placed` gives one with the
-    /// place of its block on the sheet.
+    /// Errors since the last time, which are told at once, but for faults that were told at load. `line` is how one is told.
     fn tell_errors(
         &mut self,
         host: &Host,
-        placed: impl Fn(Problem) -> Problem,
+        line: impl Fn(Problem, Locale) -> String,
     ) -> io::Result<Vec<String>> {
         let errors = std::mem::take(&mut self.errors).into_iter();
-        let errors = errors.map(|problem| placed(problem).in_locale(self.locale));
+        let errors = errors.map(|problem| line(problem, self.locale));
         let errors: Vec<String> = errors.collect();
         for error in &errors {
             match self.at_load.contains(error) {

@@ -2,6 +2,7 @@
 //!
 //! Owns the border to the language of expressions. Knows no blocks: a problem has no place but the one in its text.
 
+use super::Options;
 use crate::program::{Program, Source as Index};
 use lang_expr::reserved::SENSORS;
 use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
@@ -23,9 +24,13 @@ pub(super) struct Formulas {
 }
 
 impl Formulas {
-    pub fn new(program: &Program, compat: Compat) -> Self {
+    pub fn new(program: &Program, options: Options) -> Self {
         let sources = program.sources.iter();
-        let mut names = Names::new(program.kit, compat);
+        let mut names = Names::new(program.kit, options.compat);
+        if options.in_turns && options.compat == Compat::Studio {
+            // A judge answers as the original does; on a robot no number may become another one.
+            names = names.with_low_bits();
+        }
         if !program.has_gamepad {
             // The original's simulator has no gamepad, and its names are those of any variable.
             for sensor in SENSORS {

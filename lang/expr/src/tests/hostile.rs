@@ -503,3 +503,19 @@ fn a_block_gets_the_end_of_the_range_and_never_the_low_bits() {
         assert_eq!(number(text), (whole, is_told), "{text}");
     }
 }
+
+#[test]
+fn a_block_of_a_judged_program_gets_what_the_real_program_cuts_off() {
+    let mut names = Names::new(Kit::V62, Compat::Studio).with_low_bits();
+    for (text, whole) in [
+        ("1e10", 1_410_065_408),
+        ("x = 1e10 x", 1_410_065_408),
+        ("7.5", 8),
+    ] {
+        let mut source = Source::new(text, Wanted::Int);
+        analyse(&mut source, &mut names).unwrap();
+        let (mut store, mut nobody) = (Store::default(), Nobody);
+        let found = crate::evaluate_int(&source, &names, &mut store, &mut nobody);
+        assert_eq!(found, Ok(whole), "{text}");
+    }
+}

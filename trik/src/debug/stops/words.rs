@@ -20,6 +20,14 @@ pub(crate) fn ends_by_quit() -> Words {
     Words::new("type quit to end", "чтобы закончить, введите quit")
 }
 
+/// A line that is typed, and left out.
+pub(crate) fn too_long(bytes: usize) -> Words {
+    Words::new(
+        format!("this line is too long and is left out: a line has fewer than {bytes} bytes"),
+        format!("эта строка слишком длинная и пропущена: в строке меньше {bytes} байт"),
+    )
+}
+
 /// Of a question, by its words or the variable that is asked for.
 pub(crate) fn nobody_answers(what: &str) -> Words {
     Words::new(

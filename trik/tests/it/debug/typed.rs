@@ -93,7 +93,7 @@ impl Drop for Person {
 fn a_command_is_completed_edited_and_had_again() {
     let board = flow::board();
     let mut person = Person::new(&board, "count.flow", "xterm");
-    person.types("bre\t wh\t\r");
+    person.types("bre\twh\t\r");
     person.sees("breakpoint 1 at line 7");
     person.sees("(trik) ");
     person.types("\x1b[A\r");
@@ -102,6 +102,11 @@ fn a_command_is_completed_edited_and_had_again() {
     // To the beginning of the line, and to its end.
     person.types("1 + 2\x01p \x05 * 3\r");
     person.sees("\n7\r\n");
+    // A line without an end ends somewhere, and is no command.
+    person.types(&"x".repeat(3000));
+    person.types("\r");
+    person.sees("this line is too long and is left out");
+    person.sees("(trik) ");
     // What is typed ahead is not lost.
     person.types("p 20 + 1\rp 20 + 2\rp 20 + 3\r");
     for told in ["\n21\r\n", "\n22\r\n", "\n23\r\n"] {

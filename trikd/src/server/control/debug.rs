@@ -109,7 +109,7 @@ impl Session {
         };
         if text.trim() == LEAVE {
             self.leave_debugger().await;
-            // Behind a stop that was asked for before, so that motors rest when this is answered.
+            // After a stop that was asked for before, so that motors rest when this is answered.
             let left = Command::Debug(asked, Wish::Left);
             return self.control.programs.send(left).await;
         }

@@ -250,10 +250,8 @@ fn each_failure_has_its_words_and_the_next_transfer_works_again() {
     for (mood, expected) in cases {
         peer.mood.store(mood, Ordering::SeqCst);
         // Only silence is waited for: on a busy machine the others take a while, too.
-        register.timeout = match mood {
-            SILENT => Duration::from_millis(50),
-            _ => Duration::from_secs(60),
-        };
+        let is_silent = mood == SILENT;
+        register.timeout = Duration::from_millis(if is_silent { 50 } else { 60_000 });
         assert_eq!(read(&mut register, 2), Err(expected), "mood {mood}");
         peer.mood.store(FINE, Ordering::SeqCst);
         register.timeout = Duration::from_secs(60);
