@@ -28,6 +28,7 @@ pub mod store;
 pub mod tree;
 pub mod types;
 pub mod value;
+mod whole;
 pub mod words;
 
 pub use advice::{explained, refused};
