@@ -6,6 +6,7 @@ use harness::wait::eventually;
 use harness::{Board, Mount, Setting, processes};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A control group of our own. It goes with the test, after the mount that is in it.
 struct Group {
@@ -20,10 +21,14 @@ impl Group {
             ("/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
             ("/sys/fs/cgroup", "memory.max"),
         ];
+        // Tests beside this one make groups of the same size.
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("trikfs-it-{}-{number}", std::process::id());
         for (tree, limit) in kinds {
-            let name = format!("trikfs-it-{}-{mib}", std::process::id());
-            let folder = Path::new(tree).join(name);
-            if fs::create_dir(&folder).is_err() {
+            // Where the first version is, the other place is a plain folder, in which anything can be written.
+            let folder = Path::new(tree).join(&name);
+            if !Path::new(tree).join("cgroup.procs").exists() || fs::create_dir(&folder).is_err() {
                 continue;
             }
             let group = Self { folder };
