@@ -8,11 +8,12 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 25] = [
+const TARGETS: [(&str, Target); 26] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
     ("debugging", lang_diagram::fuzz::debugging),
+    ("edits", lang_diagram::fuzz::edits),
     ("dataflow", flow),
     ("flow", lang_dataflow::fuzz::source),
     ("flowsave", lang_dataflow::fuzz::reader),

@@ -3,9 +3,11 @@
 //! Run by tests with mutated saves, and by any fuzzer.
 
 mod debugging;
+mod edits;
 pub(crate) mod lowering;
 mod saves;
 
 pub use debugging::debugging;
+pub use edits::{edits, edits_of};
 pub use lowering::{lowering, project};
 pub use saves::reader;

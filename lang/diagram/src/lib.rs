@@ -12,6 +12,7 @@ pub mod check;
 pub mod convert;
 pub mod debug;
 pub mod devices;
+pub mod edit;
 pub mod fuzz;
 pub mod generate;
 pub mod limits;

@@ -92,3 +92,13 @@ pub const GENERATED_ROUNDS_MAX: usize = 64;
 pub const GENERATED_NAME_MAX: usize = 60;
 /// Characters of a property in a picture.
 pub const PICTURE_PROPERTY_MAX: usize = 48;
+/// Objects of a save to which a person adds: two for each block and link.
+pub const EDIT_OBJECTS_MAX: usize = 60_000;
+/// Bytes of a text that a person writes into a block.
+pub const EDIT_TEXT_BYTES: usize = 64 << 10;
+/// Bytes of what changes were, about; the oldest ones cannot be taken back then.
+pub const EDIT_HISTORY_BYTES: usize = 128 << 20;
+/// How far from the origin a block may be put, in px.
+pub const EDIT_PLACE_MAX: f64 = 100_000.0;
+/// Characters of an id or a name that a refusal repeats, and of the name of a type.
+pub const EDIT_ID_SHOWN: usize = 120;

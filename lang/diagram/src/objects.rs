@@ -261,12 +261,53 @@ impl Objects {
         self.retain(|_| true);
     }
 
+    /// Takes an object out; another one gets its place in the order.
+    pub fn take(&mut self, id: &str) -> Option<Object> {
+        let at = self.places.remove(id)?;
+        let taken = self.list.swap_remove(at);
+        if let Some(moved) = self.list.get(at)
+            && let Some(place) = self.places.get_mut(&moved.id)
+        {
+            *place = at;
+        }
+        Some(taken)
+    }
+
     /// Keeps the objects that a condition holds for.
     pub fn retain(&mut self, keep: impl Fn(&Object) -> bool) {
         self.list.retain(keep);
         let places = self.list.iter().enumerate();
         self.places = places.map(|(at, one)| (one.id.clone(), at)).collect();
     }
+}
+
+/// A new pair of objects, graphical and logical, that are wired to nothing yet, with the properties that the editor gives each.
+pub fn pair(graphical: String, logical: String, parent: &str, name: &str) -> (Object, Object) {
+    let mut graphical = Object {
+        id: graphical,
+        parent: parent.to_owned(),
+        logical: Some(logical.clone()),
+        ..Object::default()
+    };
+    let mut logical = Object {
+        id: logical,
+        parent: ROOT.to_owned(),
+        ..Object::default()
+    };
+    for object in [&mut graphical, &mut logical] {
+        object.set(Kind::Text, "name", name);
+        object.set(Kind::Id, "from", ROOT);
+        object.set(Kind::Id, "to", ROOT);
+        object.list_mut("links");
+    }
+    graphical.set(Kind::Shape("QPointF"), "position", "0, 0");
+    graphical.set(Kind::Shape("QPolygon"), "configuration", "");
+    graphical.set(Kind::Number("double"), "fromPort", "0");
+    graphical.set(Kind::Number("double"), "toPort", "0");
+    logical.set(Kind::Id, "outgoingExplosion", NOTHING);
+    logical.set(Kind::Number("int"), "linkShape", "0");
+    logical.list_mut("incomingExplosions");
+    (graphical, logical)
 }
 
 /// Whether an entry of a save is an object.

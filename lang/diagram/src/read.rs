@@ -10,9 +10,9 @@ use super::objects::{self, Objects};
 use super::project::Project;
 use lang_text::problem::{Problem, Severity, keep};
 
-pub(super) mod graph;
+pub(crate) mod graph;
 mod meta;
-mod parameters;
+pub(crate) mod parameters;
 mod words;
 
 pub use super::save::Save;

@@ -150,7 +150,7 @@ impl Save {
 }
 
 /// Refuses characters that no document may have.
-fn writable(text: &str) -> Result<(), Problem> {
+pub(crate) fn writable(text: &str) -> Result<(), Problem> {
     let is_bad = |c: &char| c.is_ascii_control() && !['\n', '\r', '\t'].contains(c);
     match text.chars().find(is_bad) {
         Some(c) => Err(Problem::error(words::control_character(c))),

@@ -247,24 +247,8 @@ impl Sketch {
             graphical: self.id(kind),
             logical: self.id(kind),
         };
-        let mut graphical = Object {
-            id: pair.graphical.clone(),
-            parent: parent.to_owned(),
-            logical: Some(pair.logical.clone()),
-            ..Object::default()
-        };
-        let mut logical = Object {
-            id: pair.logical.clone(),
-            parent: ROOT.to_owned(),
-            ..Object::default()
-        };
-        for object in [&mut graphical, &mut logical] {
-            object.set(Kind::Text, "name", name);
-            object.set(Kind::Id, "from", ROOT);
-            object.set(Kind::Id, "to", ROOT);
-            object.list_mut("links");
-        }
-        logical.set(Kind::Id, "outgoingExplosion", super::objects::NOTHING);
+        let (graphical, logical) = (pair.graphical.clone(), pair.logical.clone());
+        let (graphical, logical) = super::objects::pair(graphical, logical, parent, name);
         for (parent, object) in [(parent, graphical), (ROOT, logical)] {
             if let Some(parent) = self.objects.get_mut(parent) {
                 parent.children.push(object.id.clone());

@@ -109,6 +109,11 @@ proptest! {
     }
 
     #[test]
+    fn changes_of_a_person_are_taken_back_and_made_again(bytes in vec(any::<u8>(), 0..1500)) {
+        lang_diagram::fuzz::edits(&bytes);
+    }
+
+    #[test]
     fn strange_bytes_do_no_harm(bytes in vec(any::<u8>(), 0..300)) {
         lang_diagram::fuzz::reader(&bytes);
     }

@@ -1,6 +1,7 @@
 //! Real saves, if they are there: read, written, changed and damaged.
 
 use lang_diagram::archive::{self, Container, Entry};
+use lang_diagram::edit::{Change, Editor};
 use lang_diagram::project::{Link, Project};
 use lang_diagram::read::{Opened, VERSION, VERSION_KEY, read};
 use lang_text::problem::{Problem, Severity};
@@ -263,5 +264,46 @@ fn damage(random: &mut Random, entry: &mut Entry) {
             let text = String::from_utf8_lossy(bytes);
             *bytes = text.replace("ControlFlow", "Timer").into_bytes();
         }
+    }
+}
+
+/// Random changes of real saves are taken back without a trace, and what is written is read as the same.
+#[test]
+fn real_saves_are_changed_and_changed_back() {
+    let mut random = Random::new(26);
+    for (name, bytes) in saves() {
+        let save = opened(&name, &bytes).save;
+        let changes: Vec<u8> = (0..400).map(|_| random.below(256) as u8).collect();
+        lang_diagram::fuzz::edits_of(Editor::new(save, 26), &changes);
+    }
+}
+
+/// A block that is moved is all that changes in what TRIK Studio has written.
+#[test]
+fn a_block_that_moves_leaves_all_other_files_as_they_came() {
+    for (name, bytes) in saves() {
+        let opened = opened(&name, &bytes);
+        if opened.save.container() != Container::Zip {
+            continue;
+        }
+        let blocks = opened.project.diagrams.iter().flat_map(|one| &one.blocks);
+        let Some(block) = blocks.into_iter().find(|one| one.incoming.is_empty()) else {
+            continue;
+        };
+        let id = block.id.clone();
+        let links = block.outgoing.len();
+        let before = files(&opened.save.write().unwrap());
+        let mut editor = Editor::new(opened.save, 1);
+        let places = vec![(id, (block.position.0 + 10.0, block.position.1))];
+        editor.apply(&Change::Move { places }).unwrap();
+        let after = files(&editor.save().write().unwrap());
+        assert!(before.keys().eq(after.keys()), "{name}");
+        let other = before
+            .iter()
+            .filter(|(file, bytes)| after[*file] != **bytes);
+        // An old save is written anew as a whole; the version says so.
+        let other: Vec<_> = other.map(|(file, _)| file).collect();
+        let is_old = other.iter().any(|file| file.contains("metaInfo"));
+        assert!(is_old || other.len() <= 1 + links, "{name}: {other:?}");
     }
 }

@@ -21,6 +21,14 @@ impl Kit {
             _ => None,
         }
     }
+
+    /// What `lastKitId` calls it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::V6 => "trikV6Kit",
+            Self::V62 => "trikV62Kit",
+        }
+    }
 }
 
 /// What a sensor variable holds.

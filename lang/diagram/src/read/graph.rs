@@ -309,12 +309,13 @@ fn label(name: &str, kind: &str) -> String {
     }
 }
 
-fn point(object: &Object, key: &str) -> (f64, f64) {
+/// A point of a property; the origin without it.
+pub(crate) fn point(object: &Object, key: &str) -> (f64, f64) {
     points(object, key).first().copied().unwrap_or_default()
 }
 
 /// Points of a property, `x, y : x, y : `; what is no finite number is left out.
-fn points(object: &Object, key: &str) -> Vec<(f64, f64)> {
+pub(crate) fn points(object: &Object, key: &str) -> Vec<(f64, f64)> {
     let text = object.property(key).unwrap_or_default();
     let finite = |text: &str| {
         text.trim()

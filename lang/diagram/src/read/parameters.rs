@@ -8,7 +8,7 @@ use lang_text::xml;
 ///
 /// # Errors
 /// Text that is no XML.
-pub(super) fn formal(labels: &str) -> Result<Vec<Parameter>, Problem> {
+pub(crate) fn formal(labels: &str) -> Result<Vec<Parameter>, Problem> {
     if labels.trim().is_empty() {
         return Ok(Vec::new());
     }
@@ -29,7 +29,7 @@ pub(super) fn formal(labels: &str) -> Result<Vec<Parameter>, Problem> {
 ///
 /// # Errors
 /// Text that is no XML.
-pub(super) fn actual(properties: &str) -> Result<Vec<Argument>, Problem> {
+pub(crate) fn actual(properties: &str) -> Result<Vec<Argument>, Problem> {
     if properties.trim().is_empty() {
         return Ok(Vec::new());
     }

@@ -1,0 +1,249 @@
+//! A save that a person draws: changes one after the other, each whole or not at all, taken back and made again.
+//!
+//! Owns what each change does to the objects of a save, and the way back. What a change does not name stays as it came, also
+//! what nobody here understands. Knows no meaning of a block: what is wrong with a drawing is found by [`super::check`].
+
+use super::objects::{self, Object, ROOT};
+use super::project::{DiagramKind, Parameter};
+use super::read::{Meta, VERSION, VERSION_KEY};
+use super::save::Save;
+use crate::limits;
+use lang_expr::Kit;
+use lang_text::problem::Problem;
+
+mod changes;
+mod pen;
+mod piece;
+mod route;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use changes::carry_out;
+use pen::{Ids, Pen, Step};
+pub use piece::{Drawn, Piece, Wire};
+
+/// The name of a new main diagram, as the editor gives it.
+const MAIN_NAME: &str = "Robot's Behaviour Diagram";
+/// Which kit a save is for.
+const KIT_KEY: &str = "lastKitId";
+
+/// One change of a drawing. Ids are those of graphical objects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Blocks and links appear in a diagram.
+    Add {
+        /// Its id.
+        diagram: String,
+        /// What appears.
+        piece: Piece,
+    },
+    /// Blocks and links disappear, and with a block the links at it.
+    Remove {
+        /// Their ids.
+        ids: Vec<String>,
+    },
+    /// Blocks move to other places, in px; their links go with them.
+    Move {
+        /// The id of each, and where its upper left corner is then.
+        places: Vec<(String, (f64, f64))>,
+    },
+    /// A link from one block to another one of the same diagram.
+    Connect {
+        /// The id of the block where it begins.
+        from: String,
+        /// The id of the block where it ends.
+        to: String,
+        /// Its guard.
+        guard: String,
+    },
+    /// A link begins or ends at another block.
+    Reconnect {
+        /// The id of the link.
+        link: String,
+        /// The id of the block where it begins then.
+        from: String,
+        /// The id of the block where it ends then.
+        to: String,
+    },
+    /// A property of a block or link gets a value.
+    Set {
+        /// The id of the block or link.
+        id: String,
+        /// The name of the property in the save; of a link `Guard`.
+        property: String,
+        /// What it is then.
+        value: String,
+    },
+    /// What a call gives a parameter of its subprogram.
+    Argument {
+        /// The id of the call.
+        id: String,
+        /// The name of the parameter.
+        name: String,
+        /// The text of its expression.
+        value: String,
+    },
+    /// A new diagram, without blocks.
+    AddDiagram {
+        /// What it is for.
+        kind: DiagramKind,
+        /// Its name.
+        name: String,
+    },
+    /// A diagram gets another name; the calls of a subprogram show it.
+    Rename {
+        /// Its id.
+        diagram: String,
+        /// What it is called then.
+        name: String,
+    },
+    /// Which parameters a subprogram has.
+    Parameters {
+        /// Its id.
+        diagram: String,
+        /// All of them, in order.
+        parameters: Vec<Parameter>,
+    },
+    /// A diagram disappears with everything in it. Calls of it stay, and call nothing.
+    RemoveDiagram {
+        /// Its id.
+        diagram: String,
+    },
+    /// The world becomes another one, or the save has none.
+    World {
+        /// Its text in XML.
+        text: Option<String>,
+    },
+    /// The robot has another kit.
+    Kit {
+        /// Which one.
+        kit: Kit,
+    },
+}
+
+/// A save, and how it came to be what it is.
+#[derive(Clone, Debug)]
+pub struct Editor {
+    save: Save,
+    ids: Ids,
+    done: Vec<Step>,
+    undone: Vec<Step>,
+}
+
+impl Editor {
+    /// Begins to change a save. New objects get ids that `seed` decides: with a random one they are unlike those of other
+    /// projects.
+    pub fn new(save: Save, seed: u128) -> Self {
+        Self {
+            save,
+            ids: Ids::new(seed),
+            done: Vec::new(),
+            undone: Vec::new(),
+        }
+    }
+
+    /// A project with one main diagram, in which a program begins and ends.
+    pub fn blank(kit: Kit, seed: u128) -> Self {
+        let mut objects = objects::Objects::default();
+        let root = Object {
+            id: ROOT.to_owned(),
+            parent: objects::NOTHING.to_owned(),
+            ..Object::default()
+        };
+        // There is nothing that could have its id.
+        let _ = objects.add(root);
+        let mut meta = Meta::default();
+        let version = (VERSION_KEY.to_owned(), VERSION.to_owned());
+        meta.keys.extend([version]);
+        let mut blank = Self::new(Save::made(objects, meta), seed);
+        let mut pen = Pen::new(&mut blank.save, &mut blank.ids);
+        pen.meta().keys.insert(KIT_KEY.to_owned(), kit.id().into());
+        let made = pen.diagram(DiagramKind::Main, MAIN_NAME);
+        let start = Drawn::of("InitialNode", (100.0, 200.0));
+        let end = Drawn::of("FinalNode", (400.0, 200.0));
+        let piece = Piece {
+            blocks: vec![start, end],
+            links: Vec::new(),
+        };
+        // Both are known blocks.
+        let _ = made.and_then(|diagram| piece::add(&mut pen, &diagram, &piece));
+        let _ = pen.finish();
+        blank
+    }
+
+    /// The save as it is now.
+    pub fn save(&self) -> &Save {
+        &self.save
+    }
+
+    /// Makes a change, whole or not at all. The ids of what is new: blocks first, then links, each in the order of the change.
+    ///
+    /// # Errors
+    /// An id that is not there, a text that a save cannot carry, more than a project may have; nothing has changed then.
+    pub fn apply(&mut self, change: &Change) -> Result<Vec<String>, Problem> {
+        let mut pen = Pen::new(&mut self.save, &mut self.ids);
+        match carry_out(&mut pen, change) {
+            Ok(new) => {
+                let step = pen.finish();
+                if !step.is_empty() {
+                    self.undone.clear();
+                    self.done.push(step);
+                    self.forget();
+                }
+                Ok(new)
+            }
+            Err(why) => {
+                let mut step = pen.finish();
+                step.swap(&mut self.save);
+                Err(why)
+            }
+        }
+    }
+
+    /// Takes the last change back. Whether there was one.
+    pub fn undo(&mut self) -> bool {
+        let Some(mut step) = self.done.pop() else {
+            return false;
+        };
+        step.swap(&mut self.save);
+        self.undone.push(step);
+        true
+    }
+
+    /// Makes the change again that was taken back last. Whether there was one.
+    pub fn redo(&mut self) -> bool {
+        let Some(mut step) = self.undone.pop() else {
+            return false;
+        };
+        step.swap(&mut self.save);
+        self.done.push(step);
+        true
+    }
+
+    /// How many changes can be taken back.
+    pub fn undo_count(&self) -> usize {
+        self.done.len()
+    }
+
+    /// How many changes can be made again.
+    pub fn redo_count(&self) -> usize {
+        self.undone.len()
+    }
+
+    /// Blocks, and links between them, as they can be added elsewhere.
+    pub fn copy(&self, ids: &[String]) -> Piece {
+        piece::copy(&self.save, ids)
+    }
+
+    /// The oldest changes go when all of them take too much memory.
+    fn forget(&mut self) {
+        let mut bytes: usize = self.done.iter().map(Step::bytes).sum();
+        let mut gone = 0;
+        while bytes > limits::EDIT_HISTORY_BYTES && gone + 1 < self.done.len() {
+            bytes -= self.done[gone].bytes();
+            gone += 1;
+        }
+        self.done.drain(..gone);
+    }
+}

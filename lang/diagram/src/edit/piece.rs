@@ -1,0 +1,223 @@
+//! Blocks with the links between them, apart from any project: what is drawn, copied and pasted.
+//!
+//! Owns what of a block goes with it: everything that a person wrote, also in blocks of other kits, and the subprogram of a
+//! call by its name.
+
+use super::changes::{self, carried, diagram, parameters, sane, subprograms, written_arguments};
+use super::pen::Pen;
+use super::route;
+use super::words;
+use crate::blocks;
+use crate::limits;
+use crate::objects::Kind;
+use crate::project::{Argument, Block};
+use crate::save::Save;
+use lang_text::problem::Problem;
+use std::collections::HashMap;
+
+/// Blocks and links between them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// Its blocks.
+    pub blocks: Vec<Drawn>,
+    /// Links between these.
+    pub links: Vec<Wire>,
+}
+
+/// A block of a piece.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Its type, as `TrikV6EnginesForward`.
+    pub kind: String,
+    /// The name that it is saved with; empty: that of its type.
+    pub name: String,
+    /// What is written in it; other properties have their defaults.
+    pub properties: Vec<(String, String)>,
+    /// Its upper left corner, in px.
+    pub place: (f64, f64),
+    /// Width and height, in px.
+    pub size: (f64, f64),
+    /// Of a call the name of its subprogram.
+    pub calls: Option<String>,
+    /// What a call gives its parameters, by their names.
+    pub arguments: Vec<(String, String)>,
+}
+
+impl Drawn {
+    /// A new block of this type.
+    pub fn of(kind: &str, place: (f64, f64)) -> Self {
+        Self {
+            kind: kind.to_owned(),
+            place,
+            size: (route::SIZE, route::SIZE),
+            ..Self::default()
+        }
+    }
+}
+
+/// A link of a piece.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wire {
+    /// Which of its blocks it leaves.
+    pub from: usize,
+    /// Which of its blocks it enters.
+    pub to: usize,
+    /// Its guard.
+    pub guard: String,
+}
+
+/// Adds a piece to a diagram: ids of its blocks, then of its links.
+pub(super) fn add(pen: &mut Pen<'_>, sheet: &str, piece: &Piece) -> Result<Vec<String>, Problem> {
+    diagram(pen, sheet)?;
+    let subprograms = subprograms(pen);
+    let mut ids = Vec::new();
+    for drawn in &piece.blocks {
+        ids.push(draw(pen, sheet, drawn, &subprograms)?);
+    }
+    for wire in &piece.links {
+        let (Some(from), Some(to)) = (ids.get(wire.from), ids.get(wire.to)) else {
+            return Err(Problem::error(words::no_end()));
+        };
+        if wire.from.max(wire.to) >= piece.blocks.len() {
+            return Err(Problem::error(words::no_end()));
+        }
+        let (from, to) = (from.clone(), to.clone());
+        ids.push(changes::connect(pen, &from, &to, &wire.guard)?);
+    }
+    Ok(ids)
+}
+
+fn draw(
+    pen: &mut Pen<'_>,
+    sheet: &str,
+    drawn: &Drawn,
+    subprograms: &HashMap<String, String>,
+) -> Result<String, Problem> {
+    let is_name = |kind: &str| {
+        !kind.is_empty()
+            && kind.len() <= limits::EDIT_ID_SHOWN
+            && kind.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+    };
+    let kept = [
+        "ControlFlow",
+        "Edge",
+        "RobotsDiagramNode",
+        "SubprogramDiagram",
+    ];
+    if !is_name(&drawn.kind) || kept.contains(&&*drawn.kind) {
+        return Err(Problem::error(words::no_kind()));
+    }
+    let (x, y) = sane(drawn.place)?;
+    let (width, height) = sane(drawn.size)?;
+    let (width, height) = (width.max(1.0), height.max(1.0));
+    let row = blocks::find(&drawn.kind);
+    carried(&drawn.name)?;
+    let name = match (&*drawn.name, row) {
+        ("", Some(row)) => row.shown,
+        ("", None) => &drawn.kind,
+        (name, _) => name,
+    };
+    let id = pen.pair(&drawn.kind, sheet, name)?;
+    for property in row.iter().flat_map(|row| row.properties) {
+        pen.set_logical(&id, property.name, property.default);
+    }
+    for (key, value) in &drawn.properties {
+        carried(key)?;
+        carried(value)?;
+        if changes::WIRING.contains(&&**key) || key.is_empty() {
+            return Err(Problem::error(words::no_property("")));
+        }
+        pen.set_logical(&id, key, value);
+    }
+    if let Some(object) = pen.get_mut(&id) {
+        let corners = format!("0, 0 : {width}, 0 : {width}, {height} : 0, {height} : ");
+        object.set(Kind::Shape("QPointF"), "position", &format!("{x}, {y}"));
+        object.set(Kind::Shape("QPolygon"), "configuration", &corners);
+    }
+    if let Some(callee) = drawn.calls.as_ref().and_then(|name| subprograms.get(name)) {
+        call(pen, &id, callee, &drawn.arguments)?;
+    }
+    Ok(id)
+}
+
+/// Makes a block a call; parameters that get nothing get their defaults.
+fn call(
+    pen: &mut Pen<'_>,
+    id: &str,
+    callee: &str,
+    given: &[(String, String)],
+) -> Result<(), Problem> {
+    let Some(logical) = pen.get(callee) else {
+        return Ok(());
+    };
+    let name = logical.property("name").unwrap_or_default().to_owned();
+    let mut arguments = Vec::new();
+    for parameter in parameters(logical) {
+        let value = given.iter().find(|(name, _)| *name == parameter.name);
+        let value = value.map_or(&parameter.default, |(_, value)| value);
+        carried(value)?;
+        arguments.push(Argument {
+            value: value.clone(),
+            name: parameter.name,
+            kind: parameter.kind,
+        });
+    }
+    pen.rename(id, &name);
+    pen.set_logical_id(id, "outgoingExplosion", callee);
+    if !arguments.is_empty() {
+        pen.set_logical(id, "dynamicProperties", &written_arguments(&arguments));
+    }
+    let caller = pen.get(id).and_then(|one| one.logical.clone());
+    if let (Some(callee), Some(caller)) = (pen.get_mut(callee), caller) {
+        callee.list_mut("incomingExplosions").push(caller);
+    }
+    Ok(())
+}
+
+/// Blocks with these ids, and the links between two of them.
+pub(super) fn copy(save: &Save, ids: &[String]) -> Piece {
+    let (project, _) = save.project();
+    let blocks = project.diagrams.iter().flat_map(|one| &one.blocks);
+    let by_id: HashMap<&str, &Block> = blocks.map(|block| (&*block.id, block)).collect();
+    let mut piece = Piece::default();
+    let mut places = HashMap::new();
+    for id in ids {
+        if let Some(block) = by_id.get(&**id)
+            && !places.contains_key(&*block.id)
+        {
+            places.insert(&*block.id, piece.blocks.len());
+            piece.blocks.push(drawn(save, block));
+        }
+    }
+    for diagram in &project.diagrams {
+        for link in &diagram.links {
+            let at = |end: Option<usize>| places.get(&*diagram.blocks.get(end?)?.id).copied();
+            if let (Some(from), Some(to)) = (at(link.from), at(link.to)) {
+                let guard = link.guard.clone();
+                piece.links.push(Wire { from, to, guard });
+            }
+        }
+    }
+    piece
+}
+
+fn drawn(save: &Save, block: &Block) -> Drawn {
+    let callee = block.calls.as_deref().and_then(|id| save.objects.get(id));
+    let arguments = block.arguments.iter();
+    Drawn {
+        kind: block.kind.clone(),
+        name: block.name.clone(),
+        properties: block.properties.clone().into_iter().collect(),
+        place: block.position,
+        size: match block.size {
+            (width, height) if width > 0.0 && height > 0.0 => block.size,
+            _ => (route::SIZE, route::SIZE),
+        },
+        calls: callee
+            .and_then(|one| one.property("name"))
+            .map(str::to_owned),
+        arguments: arguments
+            .map(|one| (one.name.clone(), one.value.clone()))
+            .collect(),
+    }
+}

@@ -1,0 +1,105 @@
+//! What can be wrong with a change of a drawing, in words.
+
+use lang_text::problem::Words;
+
+/// The name of every link, as the editor gives it.
+pub(super) const LINK_NAME: &str = "Link";
+
+pub(super) fn no_block() -> Words {
+    Words::new(
+        "there is no such block in the project: was it removed meanwhile?",
+        "такого блока в проекте нет: может быть, его уже удалили?",
+    )
+}
+
+pub(super) fn no_link() -> Words {
+    Words::new(
+        "there is no such link in the project: was it removed meanwhile?",
+        "такой связи в проекте нет: может быть, её уже удалили?",
+    )
+}
+
+pub(super) fn no_diagram() -> Words {
+    Words::new(
+        "there is no such diagram in the project",
+        "такой диаграммы в проекте нет",
+    )
+}
+
+pub(super) fn other_diagram() -> Words {
+    Words::new(
+        "a link joins blocks of one diagram, and these are in two",
+        "связь соединяет блоки одной диаграммы, а эти - в разных",
+    )
+}
+
+pub(super) fn far_away() -> Words {
+    Words::new(
+        "a block cannot be put there: it is too far away, or no place",
+        "туда нельзя поместить блок: это слишком далеко или не место",
+    )
+}
+
+pub(super) fn no_name() -> Words {
+    Words::new("a name is missing", "нужно имя")
+}
+
+pub(super) fn long_text(bytes: usize, most: usize) -> Words {
+    Words::new(
+        format!("the text has {bytes} bytes, and {most} are allowed"),
+        format!("в тексте байт: {bytes}, а разрешено {most}"),
+    )
+}
+
+pub(super) fn no_property(name: &str) -> Words {
+    Words::new(
+        format!("the block has no property '{name}' that can be written"),
+        format!("у блока нет свойства '{name}', которое можно записать"),
+    )
+}
+
+pub(super) fn no_parameters() -> Words {
+    Words::new(
+        "only a subprogram has parameters",
+        "параметры есть только у подпрограммы",
+    )
+}
+
+pub(super) fn no_type() -> Words {
+    Words::new(
+        "the type of a parameter is int, float, bool or string",
+        "тип параметра - int, float, bool или string",
+    )
+}
+
+pub(super) fn same_parameter(name: &str) -> Words {
+    Words::new(
+        format!("two parameters are called '{name}'"),
+        format!("два параметра называются '{name}'"),
+    )
+}
+
+pub(super) fn last_main() -> Words {
+    Words::new(
+        "this is the only main diagram: a program begins there",
+        "это единственная главная диаграмма: с неё начинается программа",
+    )
+}
+
+pub(super) fn no_kind() -> Words {
+    Words::new("there is no block of this type", "блока такого типа нет")
+}
+
+pub(super) fn no_end() -> Words {
+    Words::new(
+        "a link of what is added ends at none of its blocks",
+        "связь в добавляемом не оканчивается ни у одного из его блоков",
+    )
+}
+
+pub(super) fn too_many(most: usize) -> Words {
+    Words::new(
+        format!("a project has at most {most} blocks and links together"),
+        format!("в проекте не больше {most} блоков и связей вместе"),
+    )
+}
