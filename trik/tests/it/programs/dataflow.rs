@@ -90,7 +90,7 @@ fn mistakes_of_a_data_flow_program_are_told_where_they_are_and_nothing_moves() {
     assert_eq!(late.code(), 1, "{}", late.stdout);
     assert!(
         late.stderr
-            .contains("Late: Text programming 'F': 'IO0', 1:1 Division by zero"),
+            .contains("3:32 Late: Text programming 'F': 'IO0': Division by zero"),
         "{}",
         late.stderr
     );
