@@ -58,12 +58,7 @@ impl Content {
     /// Everything that is wrong with it, as it was found.
     pub fn problems(&self) -> Vec<Problem> {
         match self {
-            Self::Diagram(opened) => {
-                let mut problems = opened.problems.clone();
-                problems.extend(check(&opened.project, World::Robot));
-                problems.extend(of_world_in(&opened.project));
-                problems
-            }
+            Self::Diagram(opened) => of_project(&opened.project, opened.problems.clone()),
             Self::Flow(flow, None) => flow.found(),
             Self::Flow(flow, Some(opened)) => {
                 let mut problems = opened.problems.clone();
@@ -116,6 +111,14 @@ pub fn is_world(bytes: &[u8]) -> bool {
 fn is_script(path: &Path) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| ["js", "py"].contains(&&*ending.to_ascii_lowercase()))
+}
+
+/// Everything that is wrong with a project of diagrams of control flow, after what was found while it was read.
+pub fn of_project(project: &Project, found: Vec<Problem>) -> Vec<Problem> {
+    let mut problems = found;
+    problems.extend(check(project, World::Robot));
+    problems.extend(of_world_in(project));
+    problems
 }
 
 /// What is wrong with the world in a save.

@@ -6,6 +6,7 @@
 use crate::failure::Failure;
 use crate::judged;
 use crate::limits;
+use crate::palette;
 use crate::project::{self, Answer};
 use crate::run;
 use crate::words;
@@ -18,6 +19,8 @@ use std::time::Duration;
 use studio::findings::Findings;
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
+
+mod draft;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = include_str!("types.d.ts");
@@ -148,6 +151,18 @@ pub fn open(
         (Ok(project), _) => good(&Project(project).into()),
         (Err(why), locale) => bad(&why, &name, None, locale),
     }
+}
+
+/// The blocks that a person can draw with, in the order of the palette.
+#[wasm_bindgen(unchecked_return_type = "Answer<PaletteBlock[]>")]
+pub fn palette(
+    #[wasm_bindgen(unchecked_optional_param_type = "LintOptions")] wanted: &JsValue,
+) -> JsValue {
+    let told = match options(wanted) {
+        Ok(options) => palette::palette(&options),
+        Err(why) => (Err(why), Locale::default()),
+    };
+    answer("", None, told)
 }
 
 /// A project that was opened. Nothing of it changes.

@@ -1,4 +1,4 @@
-//! Projects of TRIK Studio in a browser: opened, looked through, shown, written as text, judged, run tick by tick and debugged.
+//! Projects of TRIK Studio in a browser: drawn, opened, looked through, shown, written as text, judged, run tick by tick and debugged.
 //!
 //! Owns the options of each request and the JSON that answers have. Values in, values out: no files, network, threads or
 //! clock; `bindings`, which exists in a browser alone, carries them to JavaScript and brings the clock. What is done is known
@@ -6,10 +6,13 @@
 
 #[cfg(target_family = "wasm")]
 mod bindings;
+pub mod change;
+pub mod draft;
 pub mod failure;
 pub mod judged;
 pub mod limits;
 pub mod options;
+pub mod palette;
 pub mod project;
 pub mod run;
 pub mod words;

@@ -24,3 +24,7 @@ pub const ANSWERS_MAX: usize = 10_000;
 pub const TRAIL_NUMBERS_MAX: usize = 4 * 100_000;
 /// Greatest seed: what a number of JavaScript holds, and 32 bits.
 pub const SEED_MAX: u32 = u32::MAX;
+/// Blocks, links or places that one change names.
+pub const CHANGED_MAX: usize = 20_000;
+/// Bytes of a change as JSON: a world is the largest one.
+pub const CHANGE_BYTES_MAX: usize = 40 << 20;

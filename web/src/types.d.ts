@@ -79,6 +79,130 @@ export interface About {
   hasWorld: boolean;
 }
 
+/** A block that a person can draw with. */
+export interface PaletteBlock {
+  /** Its type in saves. */
+  kind: string;
+  title: string;
+  category: 'algorithms' | 'actions' | 'wait' | 'drawing';
+  /** Which kits have it. */
+  kits: string[];
+  /** What it does, in English. */
+  text: string;
+  /** Its picture: pieces of SVG around the origin, in a square of 50. */
+  icon: string;
+  properties: PropertyFacts[];
+}
+
+export interface PropertyFacts {
+  name: string;
+  title: string;
+  default: string;
+  takes: 'statements' | 'expression' | 'text' | 'variable' | 'ports' | 'number' | 'choice';
+  choices: string[] | null;
+}
+
+export interface BlankOptions {
+  locale?: Locale;
+  kit?: 'trikV62Kit' | 'trikV6Kit';
+}
+
+/** A project that is drawn. */
+export interface DraftState {
+  name: string;
+  kit: 'trikV62Kit' | 'trikV6Kit';
+  diagrams: DrawnDiagram[];
+  /** How many changes can be taken back, and made again. */
+  undo: number;
+  redo: number;
+  hasWorld: boolean;
+}
+
+export interface DrawnDiagram {
+  id: string;
+  name: string;
+  kind: 'main' | 'subprogram';
+  parameters: Parameter[];
+}
+
+export interface Parameter {
+  name: string;
+  kind: 'int' | 'float' | 'bool' | 'string';
+  default: string;
+}
+
+/** A diagram; places are pixels to the right and down. */
+export interface DrawnSheet {
+  id: string;
+  blocks: DrawnBlock[];
+  links: DrawnLink[];
+}
+
+export interface DrawnBlock {
+  id: string;
+  kind: string;
+  /** As it is saved; `title` is what a person reads. */
+  name: string;
+  title: string;
+  /** What it does, in a few words. */
+  details: string;
+  at: [number, number];
+  size: [number, number];
+  properties: Record<string, string>;
+  /** The id of the diagram that it calls. */
+  calls: string | null;
+  arguments: { name: string; kind: string; value: string }[];
+}
+
+export interface DrawnLink {
+  id: string;
+  /** null: it hangs loose there. */
+  from: string | null;
+  to: string | null;
+  guard: string;
+  path: [number, number][];
+}
+
+/** Blocks and links between them, apart from any project. */
+export interface Piece {
+  blocks: PieceBlock[];
+  /** Ends are places in `blocks`. */
+  links: { from: number; to: number; guard?: string }[];
+}
+
+export interface PieceBlock {
+  kind: string;
+  at: [number, number];
+  size?: [number, number];
+  name?: string;
+  properties?: Record<string, string>;
+  /** The name of the subprogram that it calls. */
+  calls?: string | null;
+  arguments?: Record<string, string>;
+}
+
+/** A change of a drawing; ids are those of a sheet. */
+export type Change =
+  | ({ do: 'add'; diagram: string } & Piece)
+  | { do: 'remove'; ids: string[] }
+  | { do: 'move'; places: { id: string; at: [number, number] }[] }
+  | { do: 'connect'; from: string; to: string; guard?: string }
+  | { do: 'reconnect'; link: string; from: string; to: string }
+  | { do: 'set'; id: string; property: string; value: string }
+  | { do: 'argument'; id: string; name: string; value: string }
+  | { do: 'addDiagram'; kind: 'main' | 'subprogram'; name: string }
+  | { do: 'rename'; diagram: string; name: string }
+  | { do: 'parameters'; diagram: string; parameters: Parameter[] }
+  | { do: 'removeDiagram'; diagram: string }
+  | { do: 'world'; text: string | null }
+  | { do: 'kit'; kit: 'trikV62Kit' | 'trikV6Kit' };
+
+/** A name that can stand in an expression. */
+export interface NameFacts {
+  name: string;
+  is: 'variable' | 'sensor' | 'constant' | 'function';
+}
+
 /** How a project is run; all as the options of `trik check`. */
 export interface RunOptions {
   locale?: Locale;

@@ -125,3 +125,33 @@ pub(crate) fn no_debugger() -> Words {
         "у этого запуска нет отладчика: начните его с параметром 'debug'",
     )
 }
+
+/// A project that nobody can draw here.
+pub(crate) fn no_drawing() -> Words {
+    Words::new(
+        "this is a program of data flow, and only diagrams of control flow can be drawn here",
+        "это потоковая программа, а рисовать здесь можно только диаграммы потока управления",
+    )
+}
+
+/// A kit that there is not.
+pub(crate) fn no_kit() -> Words {
+    Words::new(
+        "the option 'kit' is 'trikV62Kit' or 'trikV6Kit'",
+        "параметр 'kit' - 'trikV62Kit' или 'trikV6Kit'",
+    )
+}
+
+/// A change that is none, by the field that is wrong.
+pub(crate) fn wrong_change(field: &str) -> Words {
+    match field {
+        "" => Words::new(
+            "a change is an object with its name in 'do'",
+            "изменение - это объект с именем в поле 'do'",
+        ),
+        field => Words::new(
+            format!("the field '{field}' of the change is missing, strange, or of another kind"),
+            format!("поля '{field}' нет в изменении, или оно лишнее или другого вида"),
+        ),
+    }
+}

@@ -12,7 +12,7 @@ use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};
 use lang_expr::words::{Fault, Reason};
-use lang_expr::{Compat, Kind, Names, Source, Value};
+use lang_expr::{Compat, Kind, Kit, Names, Source, Value};
 use lang_text::problem::{Place, Problem, Severity};
 
 pub(crate) mod aside;
@@ -37,6 +37,18 @@ pub fn check(project: &Project, world: World) -> Vec<Problem> {
     problems.extend(endless_calls(&program));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
+}
+
+/// The names that can stand in expressions of a project: those of its kit, and variables of blocks that a program comes to.
+pub fn names(project: &Project) -> Names {
+    match lower(project, World::Robot) {
+        Ok(Lowered { program, .. }) => {
+            let mut names = Names::new(program.kit, Compat::Studio);
+            taught(&program, &Flow::of(&program), &mut names);
+            names
+        }
+        Err(_) => Names::new(Kit::default(), Compat::Studio),
+    }
 }
 
 /// What is wrong with blocks that the program never comes to is less bad: it runs.

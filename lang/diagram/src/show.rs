@@ -17,7 +17,7 @@ use crate::limits;
 use lang_text::problem::Locale;
 
 /// The name of a block, as the editor has it.
-fn name(block: &Block, locale: Locale) -> String {
+pub fn name(block: &Block, locale: Locale) -> String {
     match blocks::find(&block.kind) {
         Some(row) => row.shown_in(locale).to_owned(),
         None => block.kind.clone(),
@@ -34,7 +34,7 @@ fn property<'a>(block: &'a Block, row: &Row, name: &str) -> &'a str {
 }
 
 /// What a block does, in a few words: texts of its properties, the flags left out.
-fn details(block: &Block) -> String {
+pub fn details(block: &Block) -> String {
     let Some(row) = blocks::find(&block.kind) else {
         return String::new();
     };

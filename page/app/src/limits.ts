@@ -97,3 +97,13 @@ export const SHAPE_PARTS_MAX = 100;
 export const QUESTION_S_MAX = 86_400;
 /** Times, names and the checksum of an attachment of a recording. */
 export const ATTACHED_WORDS_BYTES = 1024;
+/** A project that the studio opens. */
+export const EDIT_FILE_MB_MAX = 32;
+/** A project in an address: what browsers take and messengers carry. */
+export const LINK_KIB_MAX = 48;
+/** After the last change, before mistakes are looked for. */
+export const LOOK_AFTER_MS = 30;
+/** What is pasted stands beside its original. */
+export const PASTE_SHIFT_PX = 25;
+/** Lines of what a run has said that are kept. */
+export const SAID_LINES_MAX = 500;

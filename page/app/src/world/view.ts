@@ -2,7 +2,7 @@
 //
 // Owns the loop, the camera and the trail. What is drawn is known to `floor` and `moving`.
 
-import type { Robot } from '../robot/robot.svelte';
+import type { Around } from './around';
 import { Camera } from './camera';
 import { Floor } from './floor';
 import { drawMoving } from './moving';
@@ -11,6 +11,14 @@ import type { Place, Scene, WorldState } from './types';
 
 /** Sharper pictures cost more than they show. */
 const RATIO_MAX = 2;
+
+/** What is drawn. */
+export interface Drawable {
+  readonly scene: Scene | undefined;
+  readonly world: WorldState | undefined;
+  /** What makes both of something else at each picture. */
+  readonly around: Around | undefined;
+}
 
 export class View {
   readonly camera = new Camera();
@@ -27,7 +35,7 @@ export class View {
   #frame = 0;
 
   constructor(
-    private readonly robot: Robot,
+    private readonly drawable: Drawable,
     private readonly canvas: HTMLCanvasElement,
   ) {}
 
@@ -70,7 +78,7 @@ export class View {
 
   /** The ways of robots, and what markers have left. */
   get trail(): Trail {
-    return this.robot.around?.trail ?? this.#ways;
+    return this.drawable.around?.trail ?? this.#ways;
   }
 
   /** Nothing is known of the ways until now. */
@@ -80,8 +88,8 @@ export class View {
   }
 
   #look(): void {
-    this.robot.around?.look();
-    const { scene, world } = this.robot;
+    this.drawable.around?.look();
+    const { scene, world } = this.drawable;
     if (!scene || !world || this.camera.width <= 1) return;
     if (scene !== this.#scene) {
       const isNew = String(this.#scene?.bounds) !== String(scene.bounds);
@@ -94,7 +102,7 @@ export class View {
       // A recording that goes back begins another way.
       if (this.#state && world.t < this.#state.t) this.#forget();
       this.#state = world;
-      if (!this.robot.around?.trail) this.#ways.put(world);
+      if (!this.drawable.around?.trail) this.#ways.put(world);
       this.#isDirty = true;
     }
     if (!this.#isDirty) return;

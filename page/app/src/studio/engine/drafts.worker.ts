@@ -1,0 +1,95 @@
+// The drawing in a Worker, so that the page never waits for it: one draft, changed and looked at.
+
+import init, * as web from 'trik-studio-web';
+import type { Change, DraftState, DrawnSheet, Finding, Language, Locale, NameFacts } from './facts';
+import { serve } from './remote';
+
+/** What a page shows of a draft after each change. */
+export interface Drawing {
+  state: DraftState;
+  /** The diagram that is looked at; null if the draft has it no longer. */
+  sheet: DrawnSheet | null;
+}
+
+/** What takes longer, and follows. */
+export interface Looks {
+  findings: Finding[];
+  names: NameFacts[];
+  /** The program as text, or why it cannot be written. */
+  text: string;
+  isWritten: boolean;
+}
+
+let draft: web.Draft | undefined;
+let locale: Locale = 'en';
+
+function now(diagram: string): Drawing {
+  const state = must().about();
+  const there = state.diagrams.some(({ id }) => id === diagram);
+  const shown = there ? diagram : (state.diagrams[0]?.id ?? '');
+  return { state, sheet: must().sheet(shown, locale) };
+}
+
+function must(): web.Draft {
+  if (!draft) throw new Error('there is no draft');
+  return draft;
+}
+
+/** In words, of an answer that has not come to be. */
+function said(findings: Finding[]): string {
+  return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
+}
+
+function begin(answer: ReturnType<typeof web.blank>): Drawing | string {
+  if (!answer.ok) return said(answer.error.problems);
+  draft?.free();
+  draft = answer.value;
+  return now('');
+}
+
+const calls = {
+  speak(language: Locale) {
+    locale = language;
+    const blocks = web.palette({ locale });
+    return blocks.ok ? blocks.value : [];
+  },
+  /** A text says why it is not opened; what was open stays then. */
+  open: (name: string, bytes: Uint8Array) => begin(web.edit(name, bytes, { locale })),
+  blank: (name: string) => begin(web.blank(name, { locale })),
+  see: (diagram: string) => now(diagram),
+  apply(change: Change, diagram: string): { new: string[]; drawing: Drawing } | string {
+    const made = must().apply(change, locale);
+    if (!made.ok) return said(made.error.problems);
+    return { new: made.value, drawing: now(diagram) };
+  },
+  undo: (diagram: string) => (must().undo(), now(diagram)),
+  redo: (diagram: string) => (must().redo(), now(diagram)),
+  copy(ids: string[]) {
+    const copied = must().copy(ids);
+    return copied.ok ? copied.value : { blocks: [], links: [] };
+  },
+  save(): Uint8Array | string {
+    const saved = must().save();
+    return saved.ok ? saved.value : said(saved.error.problems);
+  },
+  world: () => must().world() ?? '',
+  /** What is wrong with it, and the program as text from the diagram of this name on. */
+  look(wanted: Language | 'sentences', diagram: string): Looks {
+    const findings = must().lint(locale);
+    const names = must().names();
+    const project = must().project({ locale });
+    if (!project.ok) return { findings, names, text: said(project.error.problems), isWritten: false };
+    const shown =
+      wanted === 'sentences'
+        ? project.value.show({ locale, diagram })
+        : project.value.generate(wanted, { locale });
+    project.value.free();
+    if (!shown.ok) return { findings, names, text: said(shown.error.problems), isWritten: false };
+    const text = typeof shown.value === 'string' ? shown.value : shown.value.text;
+    return { findings, names, text, isWritten: true };
+  },
+};
+
+export type DraftCalls = typeof calls;
+
+serve(calls, init());

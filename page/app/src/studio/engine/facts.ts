@@ -1,0 +1,25 @@
+// What the package for browsers tells, by its own types.
+
+export type {
+  Answer,
+  Change,
+  DraftState,
+  DrawnBlock,
+  DrawnDiagram,
+  DrawnLink,
+  DrawnSheet,
+  Failure,
+  Finding,
+  Judged,
+  Language,
+  Locale,
+  Message,
+  NameFacts,
+  PaletteBlock,
+  Parameter,
+  Piece,
+  Progress,
+  PropertyFacts,
+  Scene,
+  State,
+} from '../../../../../web/src/types';

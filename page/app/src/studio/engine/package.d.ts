@@ -1,0 +1,69 @@
+// The package for browsers, as the studio uses it: built by web/build.sh, which declares the same of itself; web/test.sh holds
+// one to the other.
+
+import type {
+  Answer,
+  BlankOptions,
+  Change,
+  DraftState,
+  DrawnSheet,
+  Finding,
+  GenerateOptions,
+  Generated,
+  Judged,
+  Language,
+  LintOptions,
+  Locale,
+  NameFacts,
+  News,
+  OpenOptions,
+  PaletteBlock,
+  Piece,
+  Progress,
+  RunOptions,
+  Scene,
+  ShowOptions,
+  State,
+} from '../../../../../web/src/types';
+
+export default function init(): Promise<unknown>;
+export function edit(name: string, bytes: Uint8Array, options?: LintOptions): Answer<Draft>;
+export function blank(name: string, options?: BlankOptions): Answer<Draft>;
+export function palette(options?: LintOptions): Answer<PaletteBlock[]>;
+export function open(name: string, bytes: Uint8Array, options?: OpenOptions): Answer<Project>;
+export function lint(name: string, bytes: Uint8Array, options?: LintOptions): Answer<Finding[]>;
+
+export interface Draft {
+  about(): DraftState;
+  sheet(diagram: string, locale?: Locale): DrawnSheet | null;
+  apply(change: Change, locale?: Locale): Answer<string[]>;
+  undo(): boolean;
+  redo(): boolean;
+  lint(locale?: Locale): Finding[];
+  names(): NameFacts[];
+  copy(ids: string[]): Answer<Piece>;
+  world(): string | undefined;
+  save(): Answer<Uint8Array>;
+  project(options?: OpenOptions): Answer<Project>;
+  free(): void;
+}
+
+export interface Project {
+  show(options?: ShowOptions): Answer<string>;
+  generate(language: Language, options?: GenerateOptions): Answer<Generated>;
+  judge(options?: RunOptions): Answer<Judged>;
+  run(options?: RunOptions): Answer<Run>;
+  free(): void;
+}
+
+export interface Run {
+  tick(count: number): Progress;
+  progress(): Progress;
+  scene(): Scene;
+  state(): State;
+  news(): News;
+  display(): Uint8Array;
+  end(): void;
+  outcome(): Judged | undefined;
+  free(): void;
+}

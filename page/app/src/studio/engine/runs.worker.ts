@@ -1,0 +1,73 @@
+// A run in a Worker: the world and the program tick by tick, as fast as the page asks.
+
+import init, * as web from 'trik-studio-web';
+import type { Finding, Judged, Locale, Message, Progress, Scene, State } from './facts';
+import { serve } from './remote';
+
+/** What there is to see after some ticks. */
+export interface Seen {
+  progress: Progress;
+  state: State;
+  messages: Message[];
+  printed: string[];
+  /** Only if what stands still has changed. */
+  scene: Scene | undefined;
+  /** Only at the end. */
+  outcome: Judged | undefined;
+}
+
+/** Between two looks at what stands still, in looks at all else. */
+const SCENE_EVERY = 10;
+
+let project: web.Project | undefined;
+let run: web.Run | undefined;
+let looks = 0;
+let scene = '';
+
+function said(findings: Finding[]): string {
+  return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
+}
+
+function see(progress: Progress): Seen {
+  if (!run) throw new Error('nothing runs');
+  const { messages, printed } = run.news();
+  let changed: Scene | undefined;
+  if (looks % SCENE_EVERY === 0 || progress === 'over') {
+    const still = run.scene();
+    const text = JSON.stringify(still);
+    if (text !== scene) changed = still;
+    scene = text;
+  }
+  looks += 1;
+  return { progress, state: run.state(), messages, printed, scene: changed, outcome: run.outcome() };
+}
+
+const calls = {
+  /** A text says why nothing runs. */
+  begin(name: string, bytes: Uint8Array, diagram: string, seed: number, locale: Locale): Seen | string {
+    run?.free();
+    project?.free();
+    run = project = undefined;
+    looks = 0;
+    scene = '';
+    const opened = web.open(name, bytes, { locale, ...(diagram ? { diagram } : {}) });
+    if (!opened.ok) return said(opened.error.problems);
+    project = opened.value;
+    const begun = project.run({ locale, seed });
+    if (!begun.ok) return said(begun.error.problems);
+    run = begun.value;
+    return see(run.progress());
+  },
+  tick(count: number): Seen {
+    if (!run) throw new Error('nothing runs');
+    return see(run.tick(count));
+  },
+  end(): Seen {
+    run?.end();
+    return see('over');
+  },
+};
+
+export type RunCalls = typeof calls;
+
+serve(calls, init());

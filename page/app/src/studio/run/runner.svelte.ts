@@ -1,0 +1,166 @@
+// A run of the project in its world: begun, held, stepped, as fast as a person wants, to its verdict.
+//
+// Owns the clock of the page. The run itself is in a Worker, which is ended and begun anew when it does not answer.
+
+import { SAID_LINES_MAX } from '../../limits';
+import { language } from '../../words';
+import type { Scene as WorldScene, WorldState } from '../../world/types';
+import type { Judged, Message, Scene, State } from '../engine/facts';
+import { Remote } from '../engine/remote';
+import type { RunCalls, Seen } from '../engine/runs.worker';
+import type { Studio } from '../studio.svelte';
+import { words } from '../words';
+
+/** Model time of one tick. */
+const TICK_MS = 10;
+/** Ticks of one step by hand. */
+const STEP_TICKS = 10;
+/** Ticks of one call at the greatest speed: about a picture's time. */
+const FASTEST_TICKS = 500;
+export const FASTEST = Infinity;
+export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 50, FASTEST];
+
+export class Runner {
+  scene = $state.raw<WorldScene | undefined>(undefined);
+  world = $state.raw<WorldState | undefined>(undefined);
+  state = $state.raw<State | undefined>(undefined);
+  outcome = $state.raw<Judged | undefined>(undefined);
+  /** Lines of rules and program, the newest last. */
+  said = $state.raw<Message[]>([]);
+  isRunning = $state(false);
+  isPaused = $state(false);
+  refusal = $state('');
+  speed = $state(1);
+  seed = $state(1);
+  /** The view has no other way of the robot than the one that it draws itself. */
+  readonly around = undefined;
+  #remote: Remote<RunCalls> | undefined;
+  #frame = 0;
+  #last = 0;
+  #owed = 0;
+  #isAsked = false;
+
+  constructor(private readonly studio: Studio) {}
+
+  /** Blocks in which threads are. */
+  get lit(): ReadonlySet<string> {
+    const threads = this.isRunning ? (this.state?.threads ?? []) : [];
+    return new Set(threads.map(({ id }) => id));
+  }
+
+  /** The world with the robot at its start. */
+  async look(): Promise<void> {
+    if (this.isRunning) return;
+    const seen = await this.#begin();
+    if (seen) this.#take(seen);
+  }
+
+  async run(): Promise<void> {
+    const seen = await this.#begin();
+    if (!seen) return;
+    this.said = [];
+    this.outcome = undefined;
+    this.#take(seen);
+    this.isRunning = seen.progress !== 'over';
+    this.isPaused = false;
+    this.#last = performance.now();
+    this.#owed = 0;
+    this.#next();
+  }
+
+  pause(is: boolean): void {
+    this.isPaused = is;
+    this.#last = performance.now();
+    if (!is) this.#next();
+  }
+
+  async step(): Promise<void> {
+    this.isPaused = true;
+    await this.#tick(STEP_TICKS);
+  }
+
+  async end(): Promise<void> {
+    if (this.#remote && this.isRunning) this.#take(await this.#remote.call('end'));
+  }
+
+  /** Ends everything. */
+  close(): void {
+    cancelAnimationFrame(this.#frame);
+    this.#remote?.end();
+    this.#remote = undefined;
+  }
+
+  async #begin(): Promise<Seen | undefined> {
+    cancelAnimationFrame(this.#frame);
+    this.isRunning = false;
+    this.refusal = '';
+    const bytes = await this.studio.bytes();
+    if (!bytes) return undefined;
+    this.#remote ??= new Remote<RunCalls>(
+      new Worker(new URL('../engine/runs.worker.ts', import.meta.url), { type: 'module' }),
+    );
+    try {
+      const begun = await this.#remote.call('begin', this.studio.name, bytes, '', this.seed, language);
+      if (typeof begun !== 'string') return begun;
+      this.refusal = words.notRun(begun);
+    } catch (error) {
+      this.#fail(error);
+    }
+    return undefined;
+  }
+
+  #next(): void {
+    cancelAnimationFrame(this.#frame);
+    if (!this.isRunning || this.isPaused) return;
+    this.#frame = requestAnimationFrame((now) => {
+      // A page that was hidden does not make up for it.
+      const passed = Math.min(now - this.#last, 100);
+      this.#last = now;
+      this.#owed = this.speed === FASTEST ? FASTEST_TICKS : this.#owed + (passed * this.speed) / TICK_MS;
+      const ticks = Math.floor(this.#owed);
+      this.#owed -= ticks;
+      if (ticks > 0 && !this.#isAsked) void this.#tick(ticks);
+      this.#next();
+    });
+  }
+
+  async #tick(ticks: number): Promise<void> {
+    if (!this.#remote || !this.isRunning) return;
+    this.#isAsked = true;
+    try {
+      this.#take(await this.#remote.call('tick', ticks));
+    } catch (error) {
+      this.#fail(error);
+    }
+    this.#isAsked = false;
+  }
+
+  #take({ progress, state, messages, printed, scene, outcome }: Seen): void {
+    if (scene) this.scene = shown(scene);
+    this.state = state;
+    this.world = stateOf(state);
+    const lines = printed.map((text): Message => ({ level: 'log', ms: state.ms, place: '', text }));
+    if (messages.length + lines.length > 0)
+      this.said = [...this.said, ...messages, ...lines].slice(-SAID_LINES_MAX);
+    if (progress === 'over') {
+      this.isRunning = false;
+      this.outcome = outcome;
+    }
+  }
+
+  #fail(error: unknown): void {
+    this.refusal = words.notRun(String(error));
+    this.isRunning = false;
+    this.close();
+  }
+}
+
+/** As the picture of the world takes it: nothing of it is moved by hand here. */
+function shown(scene: Scene): WorldScene {
+  return { ...scene, locked: { world: true, robot: true }, fields: false, devices: [] };
+}
+
+function stateOf({ world }: State): WorldState {
+  const { t, robots, things } = world;
+  return { t, robots, things, paused: false, speed: 1, led: '', said: '', faults: {} };
+}

@@ -1,0 +1,266 @@
+// The project that is drawn: what the page shows of it, and everything that changes it.
+//
+// Owns what is looked at and chosen. Knows no elements; the draft itself is in a Worker.
+
+import { language } from '../words';
+import { EDIT_FILE_MB_MAX, LOOK_AFTER_MS, PASTE_SHIFT_PX } from '../limits';
+import type { Change, DrawnBlock, DrawnSheet, Finding, Language, PaletteBlock, Piece } from './engine/facts';
+import type { Drawing, DraftCalls, Looks } from './engine/drafts.worker';
+import { Remote } from './engine/remote';
+import { arranged } from './draw/arrange';
+import { guardOfNext } from './draw/guards';
+import { keep, kept } from './keep';
+import { fromLink, isLink } from './share';
+import { words } from './words';
+
+const NONE: Looks = { findings: [], names: [], text: '', isWritten: true };
+
+export class Studio {
+  palette = $state.raw<PaletteBlock[]>([]);
+  drawing = $state.raw<Drawing | undefined>(undefined);
+  looks = $state.raw<Looks>(NONE);
+  /** Ids of blocks and links. */
+  chosen = $state.raw<ReadonlySet<string>>(new Set());
+  language = $state<Language | 'sentences'>('sentences');
+  /** What was not done, and why. */
+  refusal = $state('');
+  /** What was done. */
+  notice = $state('');
+  isReady = $state(false);
+  isSaved = $state(true);
+  readonly #drafts: Remote<DraftCalls>;
+  readonly #byKind = $derived(new Map(this.palette.map((block) => [block.kind, block])));
+  #look: ReturnType<typeof setTimeout> | undefined;
+  #lookNumber = 0;
+  #piece: Piece | undefined;
+
+  constructor() {
+    const worker = new Worker(new URL('./engine/drafts.worker.ts', import.meta.url), { type: 'module' });
+    this.#drafts = new Remote<DraftCalls>(worker);
+  }
+
+  get name(): string {
+    return this.drawing?.state.name ?? '';
+  }
+
+  get diagram(): string {
+    return this.drawing?.sheet?.id ?? '';
+  }
+
+  get sheet(): DrawnSheet | null {
+    return this.drawing?.sheet ?? null;
+  }
+
+  /** Blocks that the kit of the project has. */
+  get offered(): PaletteBlock[] {
+    const kit = this.drawing?.state.kit ?? 'trikV62Kit';
+    return this.palette.filter(({ kits }) => kits.includes(kit));
+  }
+
+  facts(kind: string): PaletteBlock | undefined {
+    return this.#byKind.get(kind);
+  }
+
+  block(id: string): DrawnBlock | undefined {
+    return this.sheet?.blocks.find((block) => block.id === id);
+  }
+
+  /** What is wrong with a block or link. */
+  wrongWith(id: string): Finding[] {
+    return this.looks.findings.filter(({ object }) => object === id);
+  }
+
+  /** Begins: with the project of the address, with what was left here, or with a new one. */
+  async begin(hash: string): Promise<void> {
+    try {
+      this.palette = await this.#drafts.call('speak', language);
+    } catch (error) {
+      this.refusal = words.broken(String(error));
+      return;
+    }
+    if (isLink(hash)) {
+      const shared = fromLink(hash);
+      if (shared) await this.open(shared.name, shared.bytes);
+      else this.refusal = words.linkWrong;
+    }
+    const left = this.drawing ? undefined : await kept();
+    if (left && !this.drawing) {
+      await this.open(left.name, left.bytes);
+      if (this.drawing) this.notice = words.kept(left.name);
+      this.isSaved = false;
+    }
+    if (!this.drawing) await this.blank();
+    this.isReady = true;
+  }
+
+  async blank(): Promise<void> {
+    this.#show(await this.#drafts.call('blank', words.untitled));
+    this.isSaved = true;
+  }
+
+  async open(name: string, bytes: Uint8Array): Promise<void> {
+    if (bytes.length > EDIT_FILE_MB_MAX << 20) {
+      this.refusal = words.notOpened(name, words.tooLarge(EDIT_FILE_MB_MAX));
+      return;
+    }
+    const opened = await this.#drafts.call('open', name, bytes);
+    if (typeof opened === 'string') {
+      this.refusal = words.notOpened(name, opened);
+      return;
+    }
+    this.refusal = '';
+    this.#show(opened);
+    this.isSaved = true;
+  }
+
+  /** Looks at another diagram. */
+  async see(diagram: string): Promise<void> {
+    this.chosen = new Set();
+    this.drawing = await this.#drafts.call('see', diagram);
+    this.#lookSoon();
+  }
+
+  /** Changes the draft: ids of what is new. */
+  async apply(change: Change): Promise<string[]> {
+    const made = await this.#drafts.call('apply', change, this.diagram);
+    if (typeof made === 'string') {
+      this.refusal = made;
+      // What a hand has moved goes back to where it is.
+      if (this.drawing) this.drawing = { ...this.drawing };
+      return [];
+    }
+    this.refusal = this.notice = '';
+    this.#changed(made.drawing);
+    return made.new;
+  }
+
+  async undo(): Promise<void> {
+    this.#changed(await this.#drafts.call('undo', this.diagram));
+  }
+
+  async redo(): Promise<void> {
+    this.#changed(await this.#drafts.call('redo', this.diagram));
+  }
+
+  /** Adds a block; it is chosen then. `calls` is the name of a subprogram. */
+  async add(kind: string, at: [number, number], calls?: string): Promise<void> {
+    const block = { kind, at, ...(calls ? { calls } : {}) };
+    const made = await this.apply({ do: 'add', diagram: this.diagram, blocks: [block], links: [] });
+    if (made.length > 0) this.chosen = new Set(made);
+  }
+
+  async connect(from: string, to: string): Promise<void> {
+    const block = this.block(from);
+    const leaving = (this.sheet?.links ?? []).filter((link) => link.from === from);
+    const guard = block ? guardOfNext(block.kind, leaving) : '';
+    await this.apply({ do: 'connect', from, to, guard });
+  }
+
+  async remove(): Promise<void> {
+    const ids = [...this.chosen];
+    if (ids.length === 0) return;
+    this.chosen = new Set();
+    await this.apply({ do: 'remove', ids });
+  }
+
+  async copy(): Promise<Piece | undefined> {
+    const ids = [...this.chosen].filter((id) => this.block(id));
+    if (ids.length === 0) return undefined;
+    this.#piece = await this.#drafts.call('copy', ids);
+    return this.#piece;
+  }
+
+  /** Puts what was copied a little beside its original; `piece` is what comes from another page. */
+  async paste(piece: Piece | undefined = this.#piece): Promise<void> {
+    if (!piece) return;
+    const moved = piece.blocks.map((block) => ({
+      ...block,
+      at: [block.at[0] + PASTE_SHIFT_PX, block.at[1] + PASTE_SHIFT_PX] as [number, number],
+    }));
+    this.#piece = { blocks: moved, links: piece.links };
+    const made = await this.apply({ do: 'add', diagram: this.diagram, ...this.#piece });
+    this.chosen = new Set(made.slice(0, moved.length));
+  }
+
+  /** Puts the blocks of the diagram in order. */
+  async arrange(): Promise<void> {
+    if (this.sheet) await this.apply({ do: 'move', places: arranged(this.sheet) });
+  }
+
+  async addSubprogram(): Promise<void> {
+    const all = this.drawing?.state.diagrams ?? [];
+    const names = new Set(all.map(({ name }) => name));
+    let number = 1;
+    while (names.has(words.subprogramName(number))) number += 1;
+    const name = words.subprogramName(number);
+    const [diagram] = await this.apply({ do: 'addDiagram', kind: 'subprogram', name });
+    if (!diagram) return;
+    await this.see(diagram);
+    const blocks: Piece['blocks'] = [
+      { kind: 'InitialNode', at: [100, 200] },
+      { kind: 'FinalNode', at: [400, 200] },
+    ];
+    await this.apply({ do: 'add', diagram, blocks, links: [] });
+  }
+
+  /** The project as a file. */
+  async bytes(): Promise<Uint8Array | undefined> {
+    const saved = await this.#drafts.call('save');
+    if (typeof saved !== 'string') return saved;
+    this.refusal = saved;
+    return undefined;
+  }
+
+  /** Shows the program in another language. */
+  write(language: Language | 'sentences'): void {
+    this.language = language;
+    void this.#lookNow();
+  }
+
+  /** Where something is wrong: its diagram, with the block chosen. */
+  async goTo({ diagram, object }: Finding): Promise<void> {
+    const wanted = this.drawing?.state.diagrams.find(({ name }) => name === diagram);
+    if (wanted && wanted.id !== this.diagram) await this.see(wanted.id);
+    if (object) this.chosen = new Set([object]);
+  }
+
+  #show(drawing: Drawing | string): void {
+    if (typeof drawing === 'string') {
+      this.refusal = drawing;
+      return;
+    }
+    this.chosen = new Set();
+    this.drawing = drawing;
+    void this.#lookNow();
+  }
+
+  #changed(drawing: Drawing): void {
+    this.drawing = drawing;
+    this.isSaved = false;
+    const there = new Set([
+      ...(drawing.sheet?.blocks ?? []).map(({ id }) => id),
+      ...(drawing.sheet?.links ?? []).map(({ id }) => id),
+    ]);
+    if ([...this.chosen].some((id) => !there.has(id)))
+      this.chosen = new Set([...this.chosen].filter((id) => there.has(id)));
+    this.#lookSoon();
+  }
+
+  #lookSoon(): void {
+    clearTimeout(this.#look);
+    this.#look = setTimeout(() => void this.#lookNow(), LOOK_AFTER_MS);
+  }
+
+  async #lookNow(): Promise<void> {
+    clearTimeout(this.#look);
+    const number = ++this.#lookNumber;
+    const diagram = this.drawing?.state.diagrams.find(({ id }) => id === this.diagram);
+    const looks = await this.#drafts.call('look', this.language, diagram?.name ?? '');
+    // A later one has overtaken it.
+    if (number !== this.#lookNumber) return;
+    this.looks = looks;
+    if (this.isSaved) return;
+    const bytes = await this.bytes();
+    if (bytes) await keep({ name: this.name, bytes });
+  }
+}

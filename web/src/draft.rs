@@ -1,0 +1,281 @@
+//! A project that a person draws: changes in, sheets and findings out.
+//!
+//! Owns what a page is told of a drawing. What a change does is known in `lang_diagram::edit`, how it is written in JSON in
+//! `change`.
+
+use crate::change;
+use crate::failure::Failure;
+use crate::options::Options;
+use crate::project::{Answer, Project};
+use crate::words;
+use lang_diagram::check;
+use lang_diagram::edit::{Editor, Piece};
+use lang_diagram::ports::Kit;
+use lang_diagram::project::{Block, Diagram, DiagramKind, Link};
+use lang_diagram::read::Opened;
+use lang_diagram::show;
+use lang_expr::names::{Kind, is_own};
+use lang_text::problem::{Locale, Problem};
+use serde_json::{Value, json};
+use std::path::Path;
+use studio::findings::Findings;
+use studio::lint;
+use studio::program::{self, Program};
+
+/// A project while it is drawn.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// The name of its file.
+    pub name: String,
+    editor: Editor,
+    /// What was strange in the file.
+    found: Vec<Problem>,
+}
+
+impl Draft {
+    /// Opens a save to be changed. Options: `locale`. `seed` makes ids of what is new unlike those of other projects.
+    pub fn open(name: &str, bytes: Vec<u8>, options: &str, seed: u128) -> Answer<Self> {
+        let mut locale = Locale::default();
+        let opened = Options::read(options).and_then(|mut options| {
+            locale = options.locale()?;
+            options.end()?;
+            if program::is_text(Path::new(name)) {
+                return Err(Failure::Diagram(words::no_drawing()));
+            }
+            if lint::is_world(&bytes) {
+                let why = Problem::error(words::is_world());
+                return Err(Failure::Unreadable(vec![why]));
+            }
+            match program::of_bytes(bytes, false, None)? {
+                Program::Diagram(opened) => Ok(Self {
+                    name: name.to_owned(),
+                    editor: Editor::new(opened.save, seed),
+                    found: opened.problems,
+                }),
+                Program::Flow(..) | Program::Text(_) => Err(Failure::Diagram(words::no_drawing())),
+            }
+        });
+        (opened, locale)
+    }
+
+    /// A new project. Options: `locale`, and `kit`, which is `trikV62Kit` or `trikV6Kit`.
+    pub fn blank(name: &str, options: &str, seed: u128) -> Answer<Self> {
+        let mut locale = Locale::default();
+        let made = Options::read(options).and_then(|mut options| {
+            locale = options.locale()?;
+            let kit = options.text("kit")?;
+            options.end()?;
+            let kit = match kit.as_deref() {
+                None => Kit::V62,
+                Some(id) => Kit::of_id(id).ok_or_else(|| Failure::Request(words::no_kit()))?,
+            };
+            Ok(Self {
+                name: name.to_owned(),
+                editor: Editor::blank(kit, seed),
+                found: Vec::new(),
+            })
+        });
+        (made, locale)
+    }
+
+    /// Makes a change, which is an object of JSON: ids of what is new.
+    pub fn apply(&mut self, change: &str) -> Result<Value, Failure> {
+        let change = change::read(change)?;
+        let new = self.editor.apply(&change);
+        new.map(Value::from)
+            .map_err(|why| Failure::Program(vec![why]))
+    }
+
+    /// Takes the last change back, or with `again` makes it once more. Whether there was one.
+    pub fn turn_back(&mut self, again: bool) -> bool {
+        match again {
+            false => self.editor.undo(),
+            true => self.editor.redo(),
+        }
+    }
+
+    /// What it is: diagrams with their parameters, what can be taken back.
+    pub fn about(&self) -> Value {
+        let (project, _) = self.editor.save().project();
+        let diagram = |one: &Diagram| {
+            let parameters = one.parameters.iter();
+            json!({
+                "id": one.id,
+                "name": one.name,
+                "kind": match one.kind {
+                    DiagramKind::Main => "main",
+                    DiagramKind::Subprogram => "subprogram",
+                },
+                "parameters": parameters.map(|one| json!({
+                    "name": one.name, "kind": one.kind, "default": one.default,
+                })).collect::<Vec<_>>(),
+            })
+        };
+        let kit = project.meta.get("lastKitId");
+        json!({
+            "name": self.name,
+            "kit": kit.and_then(|id| Kit::of_id(id)).unwrap_or_default().id(),
+            "diagrams": project.diagrams.iter().map(diagram).collect::<Vec<_>>(),
+            "undo": self.editor.undo_count(),
+            "redo": self.editor.redo_count(),
+            "hasWorld": project.world.is_some(),
+        })
+    }
+
+    /// The text of its world in XML, if it has one.
+    pub fn world(&self) -> Option<&str> {
+        self.editor.save().meta().world.as_deref()
+    }
+
+    /// A diagram with its blocks and links; null if it has none with this id.
+    pub fn sheet(&self, diagram: &str, locale: Locale) -> Value {
+        let (project, _) = self.editor.save().project();
+        let Some(diagram) = project.diagrams.iter().find(|one| one.id == diagram) else {
+            return Value::Null;
+        };
+        let called = |block: &Block| project.called(block.calls.as_deref()?);
+        let blocks = diagram.blocks.iter().map(|one| {
+            let callee = called(one).map(|at| &project.diagrams[at]);
+            block(one, callee, locale)
+        });
+        let links = diagram.links.iter().map(|one| link(one, diagram));
+        json!({
+            "id": diagram.id,
+            "blocks": blocks.collect::<Vec<_>>(),
+            "links": links.collect::<Vec<_>>(),
+        })
+    }
+
+    /// Everything that is wrong with it, as `trik lint --json` would find it in the file.
+    pub fn lint(&self, locale: Locale) -> Value {
+        let (project, problems) = self.editor.save().project();
+        let found = self.found.iter().cloned().chain(problems).collect();
+        let mut problems = lint::of_project(&project, found);
+        let findings = Findings::new(Some(&project));
+        findings.sort(&mut problems);
+        Value::Array(findings.json(&self.name, &problems, locale))
+    }
+
+    /// Names that can stand in its expressions: variables, sensors, functions, constants.
+    pub fn names(&self) -> Value {
+        let (project, _) = self.editor.save().project();
+        let names = check::names(&project);
+        let mut all = Vec::new();
+        for slot in 0..u32::try_from(names.len()).unwrap_or(u32::MAX) {
+            let is = match names.kind(slot) {
+                Some(Kind::Variable) => "variable",
+                Some(Kind::Sensor(_)) => "sensor",
+                Some(Kind::Constant(_)) => "constant",
+                Some(Kind::Function(_)) => "function",
+                None => continue,
+            };
+            let name = names.name(slot);
+            if !is_own(name) {
+                all.push(json!({"name": name, "is": is}));
+            }
+        }
+        Value::Array(all)
+    }
+
+    /// Blocks with these ids, and the links between them: what `add` takes.
+    pub fn copy(&self, ids: &[String]) -> Value {
+        piece(&self.editor.copy(ids))
+    }
+
+    /// It as a file that TRIK Studio opens.
+    ///
+    /// # Errors
+    /// More than a save can have.
+    pub fn save(&self) -> Result<Vec<u8>, Failure> {
+        let written = self.editor.save().write();
+        written.map_err(|why| Failure::Program(vec![why]))
+    }
+
+    /// It as it is now, to be shown, written as text, judged and run. Options as those of [`Project::open`].
+    pub fn project(&self, options: &str) -> Answer<Project> {
+        let mut locale = Locale::default();
+        let opened = Options::read(options).and_then(|mut options| {
+            locale = options.locale()?;
+            let diagram = options.text("diagram")?;
+            options.end()?;
+            let mut save = self.editor.save().clone();
+            if let Some(diagram) = diagram {
+                lang_dataflow::read::choose(&mut save, &diagram).map_err(Failure::Diagram)?;
+            }
+            let (project, problems) = save.project();
+            Ok(Project {
+                name: self.name.clone(),
+                program: Program::Diagram(Box::new(Opened {
+                    project,
+                    problems,
+                    save,
+                })),
+            })
+        });
+        (opened, locale)
+    }
+}
+
+fn block(block: &Block, callee: Option<&Diagram>, locale: Locale) -> Value {
+    let arguments = block.arguments.iter();
+    let (x, y) = block.position;
+    json!({
+        "id": block.id,
+        "kind": block.kind,
+        "name": block.name,
+        "details": show::details(block),
+        "at": [x, y],
+        "size": [block.size.0, block.size.1],
+        "title": match callee {
+            Some(callee) => callee.name.clone(),
+            None => show::name(block, locale),
+        },
+        "properties": block.properties,
+        "calls": callee.map(|one| one.id.as_str()),
+        "arguments": arguments.map(|one| json!({
+            "name": one.name, "kind": one.kind, "value": one.value,
+        })).collect::<Vec<_>>(),
+    })
+}
+
+fn link(link: &Link, diagram: &Diagram) -> Value {
+    let end = |end: Option<usize>| end.and_then(|at| diagram.blocks.get(at));
+    json!({
+        "id": link.id,
+        "from": end(link.from).map(|one| one.id.as_str()),
+        "to": end(link.to).map(|one| one.id.as_str()),
+        "guard": link.guard,
+        "path": link.path.iter().map(|(x, y)| [*x, *y]).collect::<Vec<_>>(),
+    })
+}
+
+fn piece(piece: &Piece) -> Value {
+    let blocks = piece.blocks.iter().map(|one| {
+        let properties: serde_json::Map<String, Value> = one
+            .properties
+            .iter()
+            .map(|(key, value)| (key.clone(), value.as_str().into()))
+            .collect();
+        let arguments: serde_json::Map<String, Value> = one
+            .arguments
+            .iter()
+            .map(|(key, value)| (key.clone(), value.as_str().into()))
+            .collect();
+        json!({
+            "kind": one.kind,
+            "name": one.name,
+            "properties": properties,
+            "at": [one.place.0, one.place.1],
+            "size": [one.size.0, one.size.1],
+            "calls": one.calls,
+            "arguments": arguments,
+        })
+    });
+    let links = piece.links.iter();
+    json!({
+        "blocks": blocks.collect::<Vec<_>>(),
+        "links": links.map(|one| json!({
+            "from": one.from, "to": one.to, "guard": one.guard,
+        })).collect::<Vec<_>>(),
+    })
+}
