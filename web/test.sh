@@ -65,7 +65,9 @@ done
 # The compiler that the page has, if it is there.
 compiler=page/app/node_modules/typescript/bin/tsc
 if [ -e "$compiler" ]; then
-    cp web/test/types.ts web/test/tsconfig.json "$made/reader"
+    cp web/test/types.ts web/test/page.ts web/test/tsconfig.json "$made/reader"
+    # What the studio takes the package for is what it is.
+    sed "s#'[./]*web/src/types'#'trik-studio-web'#" page/app/src/studio/engine/package.d.ts >"$made/reader/taken.d.ts"
     node "$compiler" --project "$made/reader"
     echo "the types hold"
 else

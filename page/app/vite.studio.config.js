@@ -4,6 +4,7 @@ import { renameSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { defineConfig } from 'vite';
 import { licences } from './licences.js';
+import { offline } from './offline.js';
 
 const built = process.env.TRIK_STUDIO_PACKAGE ?? resolve(import.meta.dirname, '../../target/web/package');
 
@@ -19,7 +20,7 @@ function index() {
 
 export default defineConfig({
   base: './',
-  plugins: [svelte(), licences(), index()],
+  plugins: [svelte(), licences(), offline('public'), index()],
   resolve: { alias: { 'trik-studio-web': resolve(built, 'studio.js') } },
   worker: { format: 'es' },
   build: {

@@ -59,6 +59,7 @@ fn property(property: &Property, locale: Locale) -> Value {
     json!({
         "name": property.name,
         "title": property.shown_in(locale),
+        "found": property.shown,
         "default": property.default,
         "takes": takes,
         "choices": choices,

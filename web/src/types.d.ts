@@ -97,6 +97,8 @@ export interface PaletteBlock {
 export interface PropertyFacts {
   name: string;
   title: string;
+  /** What findings call it. */
+  found: string;
   default: string;
   takes: 'statements' | 'expression' | 'text' | 'variable' | 'ports' | 'number' | 'choice';
   choices: string[] | null;

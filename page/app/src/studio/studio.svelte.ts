@@ -3,7 +3,7 @@
 // Owns what is looked at and chosen. Knows no elements; the draft itself is in a Worker.
 
 import { language } from '../words';
-import { EDIT_FILE_MB_MAX, LOOK_AFTER_MS, PASTE_SHIFT_PX } from '../limits';
+import { EDIT_FILE_MB_MAX, KEEP_AFTER_MS, LOOK_AFTER_MS, PASTE_SHIFT_PX } from '../limits';
 import type { Change, DrawnBlock, DrawnSheet, Finding, Language, PaletteBlock, Piece } from './engine/facts';
 import type { Drawing, DraftCalls, Looks } from './engine/drafts.worker';
 import { Remote } from './engine/remote';
@@ -32,7 +32,9 @@ export class Studio {
   readonly #byKind = $derived(new Map(this.palette.map((block) => [block.kind, block])));
   #look: ReturnType<typeof setTimeout> | undefined;
   #lookNumber = 0;
-  #piece: Piece | undefined;
+  #keep: ReturnType<typeof setTimeout> | undefined;
+  /** What was copied last, or is being copied. */
+  #piece: Promise<Piece> | undefined;
 
   constructor() {
     const worker = new Worker(new URL('./engine/drafts.worker.ts', import.meta.url), { type: 'module' });
@@ -166,20 +168,22 @@ export class Studio {
   async copy(): Promise<Piece | undefined> {
     const ids = [...this.chosen].filter((id) => this.block(id));
     if (ids.length === 0) return undefined;
-    this.#piece = await this.#drafts.call('copy', ids);
+    this.#piece = this.#drafts.call('copy', ids);
     return this.#piece;
   }
 
-  /** Puts what was copied a little beside its original; `piece` is what comes from another page. */
-  async paste(piece: Piece | undefined = this.#piece): Promise<void> {
+  /** Puts what was copied a little beside its original; `other` is what comes from another page. */
+  async paste(other?: Piece): Promise<void> {
+    // Of another page it may be anything; the draft refuses what is no block.
+    const piece = other ?? (await this.#piece);
     if (!piece) return;
-    const moved = piece.blocks.map((block) => ({
+    const blocks = piece.blocks.map((block) => ({
       ...block,
       at: [block.at[0] + PASTE_SHIFT_PX, block.at[1] + PASTE_SHIFT_PX] as [number, number],
     }));
-    this.#piece = { blocks: moved, links: piece.links };
-    const made = await this.apply({ do: 'add', diagram: this.diagram, ...this.#piece });
-    this.chosen = new Set(made.slice(0, moved.length));
+    this.#piece = Promise.resolve({ blocks, links: piece.links });
+    const made = await this.apply({ do: 'add', diagram: this.diagram, blocks, links: piece.links });
+    this.chosen = new Set(made.slice(0, blocks.length));
   }
 
   /** Puts the blocks of the diagram in order. */
@@ -244,6 +248,7 @@ export class Studio {
     if ([...this.chosen].some((id) => !there.has(id)))
       this.chosen = new Set([...this.chosen].filter((id) => there.has(id)));
     this.#lookSoon();
+    this.#keepSoon();
   }
 
   #lookSoon(): void {
@@ -259,6 +264,15 @@ export class Studio {
     // A later one has overtaken it.
     if (number !== this.#lookNumber) return;
     this.looks = looks;
+  }
+
+  /** Not at each change: a large project takes the Worker some pictures' time. */
+  #keepSoon(): void {
+    clearTimeout(this.#keep);
+    this.#keep = setTimeout(() => void this.#keepNow(), KEEP_AFTER_MS);
+  }
+
+  async #keepNow(): Promise<void> {
     if (this.isSaved) return;
     const bytes = await this.bytes();
     if (bytes) await keep({ name: this.name, bytes });

@@ -1,0 +1,249 @@
+// A person draws a program with mouse, finger and keys, and has it judged.
+
+import { existsSync, readFileSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import type { Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
+import { Look, barriers, eventually } from '../e2e/robot.js';
+import { DATA, Site, drafted, library } from './site';
+
+let look: Look;
+let site: Site;
+let home: string;
+
+beforeAll(async () => {
+  look = await Look.start();
+  site = await Site.start();
+  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
+});
+afterEach(() => {
+  expect(look.complaints).toEqual([]);
+});
+afterAll(async () => {
+  await look?.end();
+  await site?.end();
+  rmSync(home, { recursive: true, force: true });
+});
+
+const node = (page: Page, name: string | RegExp) =>
+  page.locator('.svelte-flow__node').filter({ has: page.locator('strong', { hasText: name }) });
+
+/** Drags a block from the list to a place of the sheet, in px from its upper left corner. */
+async function drag(page: Page, title: string, x: number, y: number): Promise<void> {
+  const sheet = page.locator('.svelte-flow');
+  const count = await page.locator('.svelte-flow__node').count();
+  const source = page.getByRole('button', { name: `Add ${title}`, exact: true });
+  await source.dragTo(sheet, { targetPosition: { x, y } });
+  await eventually(
+    `${title} is there`,
+    async () => (await page.locator('.svelte-flow__node').count()) > count,
+  );
+}
+
+/** Draws a link from the right side of a block to the left one of another. */
+async function link(page: Page, from: number, to: number): Promise<void> {
+  const nodes = page.locator('.svelte-flow__node');
+  const count = await page.locator('.svelte-flow__edge').count();
+  await nodes.nth(from).hover();
+  const begin = await nodes.nth(from).locator('[data-handlepos=right]').boundingBox();
+  const end = await nodes.nth(to).boundingBox();
+  if (!begin || !end) throw new Error('no block is seen');
+  await page.mouse.move(begin.x + begin.width / 2, begin.y + begin.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(end.x + end.width / 2, end.y + end.height / 2, { steps: 8 });
+  await page.mouse.up();
+  await eventually(
+    'the link is there',
+    async () => (await page.locator('.svelte-flow__edge').count()) > count,
+  );
+}
+
+async function set(page: Page, block: number, values: Record<string, string>): Promise<void> {
+  await page.locator('.svelte-flow__node').nth(block).click();
+  for (const [label, value] of Object.entries(values)) {
+    const field = page.getByLabel('Properties').getByLabel(label, { exact: true });
+    if ((await field.evaluate((one) => one.tagName)) === 'SELECT') await field.selectOption(value);
+    else {
+      await field.fill(value);
+      await field.press('Escape');
+      await field.fill(value);
+      await field.press('Enter');
+    }
+  }
+}
+
+async function saved(page: Page, name: string): Promise<Uint8Array> {
+  const download = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  const file = join(home, name);
+  await (await download).saveAs(file);
+  return new Uint8Array(readFileSync(file));
+}
+
+async function shot(page: Page, name: string): Promise<void> {
+  if (process.env['SHOTS']) await page.screenshot({ path: join(process.env['SHOTS'], `studio-${name}.png`) });
+}
+
+test('a program drawn with the mouse is judged as its original', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  // Encoders, turns and waits of the second example of TRIK Studio, in three rows.
+  const rows: [string, Record<string, string>][][] = [
+    [
+      ['Clear Encoder', { Ports: 'E3' }],
+      ['Motors Forward', { Ports: 'M3, M4', 'Power (%)': '100' }],
+      ['Wait for Encoder', { Port: 'E3', 'Tacho Limit': '2500' }],
+      ['Stop Motors', { Ports: 'M3, M4' }],
+    ],
+    [
+      ['Clear Encoder', { Ports: 'E3' }],
+      ['Motors Backward', { Ports: 'M4', 'Power (%)': '50' }],
+      ['Motors Forward', { Ports: 'M3', 'Power (%)': '50' }],
+      ['Wait for Encoder', { Port: 'E3', 'Tacho Limit': '250' }],
+      ['Stop Motors', { Ports: 'M3, M4' }],
+    ],
+    [
+      ['Clear Encoder', { Ports: 'E3' }],
+      ['Motors Forward', { Ports: 'M3, M4', 'Power (%)': '100' }],
+      ['Wait for Encoder', { Port: 'E3', 'Tacho Limit': '1500' }],
+    ],
+  ];
+  let count = 2;
+  for (const [row, blocks] of rows.entries()) {
+    for (const [column, [title, values]] of blocks.entries()) {
+      await drag(page, title, 90 + column * 125, [70, 200, 580][row] ?? 0);
+      await set(page, count, values);
+      count += 1;
+    }
+  }
+  const order = [0, ...Array.from({ length: count - 2 }, (_, at) => at + 2), 1];
+  for (const [at, to] of order.slice(1).entries()) await link(page, order[at] ?? 0, to);
+  await page.getByText('Nothing is wrong.').waitFor({ state: 'attached' });
+  await shot(page, 'drawn');
+  await page.getByRole('button', { name: 'Arrange' }).click();
+  await page.getByLabel('Speed').selectOption('fastest');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.getByText('The program has ended.').waitFor();
+  const shown = await page.getByText(/after [\d.]+ s of the world/).textContent();
+  // What was drawn is a file that the judge takes, and takes as long as the original with its world does.
+  const { open } = await library();
+  const drawn = open('drawn.qrs', await saved(page, 'drawn.qrs'));
+  if (!drawn.ok) throw new Error(drawn.error.problems[0]?.message);
+  const judged = drawn.value.judge();
+  expect(judged.ok && judged.value.verdict).toBe('ended');
+  if (judged.ok) expect(shown).toContain(`after ${(judged.value.ms / 1000).toFixed(2)} s`);
+  const example = join(DATA, 'examples/2._AroundTheCorner_encoder.qrs');
+  if (existsSync(example) || process.env['TRIK_REQUIRE_DATA'] === '1') {
+    const original = open('original.qrs', new Uint8Array(readFileSync(example)));
+    if (!original.ok) throw new Error('the example is not read');
+    const field = (await drafted(new Uint8Array(readFileSync(example)))).world() ?? '';
+    const options = { field, trajectory: true };
+    const [one, other] = [drawn.value.judge(options), original.value.judge(options)];
+    expect(one).toEqual(other);
+  }
+  await page.context().close();
+});
+
+test('what is drawn is taken back, made again, copied, and found as it was left', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await node(page, /^Timer/).waitFor();
+  await page.locator('.svelte-flow__node').nth(2).click();
+  await page.keyboard.press('Control+c');
+  await page.keyboard.press('Control+v');
+  await expect.poll(() => node(page, /^Timer/).count()).toBe(2);
+  await page.keyboard.press('Delete');
+  await expect.poll(() => node(page, /^Timer/).count()).toBe(1);
+  await page.keyboard.press('Control+z');
+  await expect.poll(() => node(page, /^Timer/).count()).toBe(2);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await expect.poll(() => node(page, /^Timer/).count()).toBe(0);
+  expect(await page.getByRole('button', { name: 'Take back' }).isDisabled()).toBe(true);
+  await page.keyboard.press('Control+y');
+  await expect.poll(() => node(page, /^Timer/).count()).toBe(1);
+  // Once it is kept, another page of the same person has it.
+  await page.getByText('not saved').waitFor();
+  const again = await page.context().newPage();
+  await expect
+    .poll(async () => {
+      await again.goto(site.url);
+      await node(again, 'Initial Node').waitFor();
+      return node(again, /^Timer/).count();
+    })
+    .toBe(1);
+  await again.getByText('as it was when this page was left').waitFor();
+  await page.context().close();
+});
+
+test('by keys alone a block is added, written into, linked and removed', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await page.getByRole('searchbox').focus();
+  await page.keyboard.type('motors for');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await node(page, 'Motors Forward').waitFor();
+  const power = page.getByLabel('Power (%)');
+  await power.focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('sensorA');
+  await page.getByRole('option', { name: 'sensorA1' }).waitFor();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Enter');
+  await expect.poll(() => node(page, 'Motors Forward').textContent()).toContain('sensorA1');
+  await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
+  await page.getByRole('button', { name: 'Connect', exact: true }).press('Enter');
+  await expect.poll(() => page.locator('.svelte-flow__edge').count()).toBe(1);
+  await page.getByRole('group', { name: /^Motors Forward/ }).focus();
+  await page.keyboard.press('Enter');
+  const before = await page.getByRole('group', { name: /^Motors Forward/ }).boundingBox();
+  await page.keyboard.press('ArrowRight');
+  await expect
+    .poll(async () => (await page.getByRole('group', { name: /^Motors Forward/ }).boundingBox())?.x)
+    .toBeGreaterThan(before?.x ?? 0);
+  await page.keyboard.press('Delete');
+  await expect.poll(() => node(page, 'Motors Forward').count()).toBe(0);
+  await page.context().close();
+});
+
+test('mistakes are shown while they are made, and lead to their block', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await page.getByRole('button', { name: 'Add Function', exact: true }).click();
+  await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
+  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await node(page, 'Initial Node').click();
+  await page.getByLabel('Connect to').selectOption({ label: 'Function' });
+  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await page.getByText('Nothing is wrong.').waitFor({ state: 'attached' });
+  await node(page, 'Function').click();
+  const body = page.getByLabel('Properties').getByRole('textbox').first();
+  await body.fill('x = 1 +');
+  await body.press('Enter');
+  await page.getByText(/to mend/).waitFor();
+  await expect.poll(() => body.getAttribute('aria-invalid')).toBe('true');
+  await node(page, 'Initial Node').click();
+  await page.getByRole('region', { name: 'Mistakes' }).getByRole('button').first().click();
+  await expect.poll(() => page.getByRole('heading', { name: 'Function' }).count()).toBe(1);
+  await shot(page, 'mistake');
+  await page.context().close();
+});
+
+test.each(['light', 'dark'] as const)('there are no barriers in %s', async (colorScheme) => {
+  const page = await look.open(site.url, { colorScheme });
+  await node(page, 'Initial Node').waitFor();
+  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await page.getByRole('button', { name: '+ New subprogram' }).click();
+  await page.getByRole('button', { name: 'Subprogram 1', exact: true }).waitFor();
+  expect(await barriers(page)).toEqual([]);
+  await page.getByRole('button', { name: "Robot's Behaviour Diagram" }).click();
+  await node(page, 'Timer').click();
+  expect(await barriers(page)).toEqual([]);
+  await shot(page, colorScheme);
+  await page.context().close();
+});
