@@ -58,7 +58,7 @@ fi
 mkdir -p "$made/reader/node_modules"
 cp -r "$package" "$made/reader/node_modules/trik-studio-web"
 cp "$made/ours/projects/d2_motor_stuck_wheels.qrs" "$made/reader/task.qrs"
-node web/test/documents.mjs docs/user/studio.md "$made/reader" | while read -r example; do
+node web/test/documents.mjs docs/user/web-package.md "$made/reader" | while read -r example; do
     (cd "$made/reader" && node "$example")
 done
 

@@ -8,7 +8,7 @@ use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
 use crate::{
-    bridges, class, dap, debug, diagrams, fault, record, recording, remote, replay, task, up,
+    bridges, class, dap, debug, diagrams, fault, record, recording, remote, replay, site, task, up,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
@@ -37,6 +37,7 @@ Examples:
   trik show maze.qrs --svg maze.svg  the diagram as a picture
   trik lint maze.xml                 what is wrong with a world and its rules
   trik new-task maze                 a world with rules, and solutions, to change
+  trik site OUT --task maze.qrs      a page in which pupils draw a solution and have it judged
   trik check maze.qrs                does it solve its task?
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik debug maze.qrs                stop its diagram, step, and go back
@@ -241,6 +242,14 @@ enum Command {
     ///
     /// Exit status: 0 made; 1 a file of it is there already or cannot be written; 2 the command line was not understood.
     NewTask(task::NewTaskArgs),
+    /// Make the studio, in which diagrams are drawn, checked and run in a browser, as files for a web server.
+    ///
+    /// With --task the page opens that project, and everything that is drawn in it is judged in its world. Nothing of it needs
+    /// a network once it was open, and nothing is sent anywhere.
+    ///
+    /// Exit status: 0 made; 1 there is no built studio, or a file is there already or cannot be written; 2 the task cannot be
+    /// read, or the command line was not understood.
+    Site(site::SiteArgs),
     /// Run solutions of tasks in simulated time and judge them.
     ///
     /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is, or
@@ -371,6 +380,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Show(args) => diagrams::show::run(&args),
         Command::Lint(args) => diagrams::lint::run(&args),
         Command::NewTask(args) => task::run(&args),
+        Command::Site(args) => site::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Watch(args) => remote::watch::run(&args),
         Command::Info(args) => recording::info(&args),

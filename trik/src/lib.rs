@@ -34,6 +34,7 @@ mod remote;
 mod replay;
 pub mod sandbox;
 pub mod script;
+mod site;
 mod task;
 mod terminal;
 mod up;

@@ -316,3 +316,7 @@ pub(crate) const TABLE_CELLS: usize = 4 << 20;
 pub(crate) const TABLE_ROWS: usize = 65_536;
 /// Bytes of a file with a password or certificates.
 pub const SECRET_BYTES_MAX: u64 = 256 << 10;
+/// Bytes of a file of the studio.
+pub(crate) const SITE_FILE_BYTES_MAX: u64 = 16 << 20;
+/// Files of the studio.
+pub(crate) const SITE_FILES_MAX: usize = 200;

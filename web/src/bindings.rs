@@ -272,6 +272,12 @@ impl Run {
         Float64Array::from(self.0.trail(from as usize))
     }
 
+    /// Where the middle of the robot was after each tick from this one on, two numbers for each: metres as those of `state`. At
+    /// most 200000 ticks in one call.
+    pub fn way(&self, from: u32) -> Float64Array {
+        Float64Array::from(self.0.way(from as usize))
+    }
+
     /// What rules and program have said since the last call.
     #[wasm_bindgen(unchecked_return_type = "News")]
     pub fn news(&mut self) -> JsValue {

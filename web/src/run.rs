@@ -26,6 +26,8 @@ pub struct Run {
     machine: Machine,
     /// Milliseconds, x, y and degrees of the first robot after each tick, as trajectories have them.
     trail: Vec<f64>,
+    /// Its middle in metres, x and y in turn.
+    way: Vec<f64>,
     /// Messages and prints that were taken.
     said: usize,
     printed: usize,
@@ -70,6 +72,7 @@ impl Run {
             stage: Stage::Runs(Box::new(trial)),
             machine,
             trail: Vec::new(),
+            way: Vec::new(),
             said: 0,
             printed: 0,
         };
@@ -118,6 +121,8 @@ impl Run {
             let pose = robot.pose();
             let place = [f64::from(trial.now()), pose.x, pose.y, pose.degrees];
             self.trail.extend(place);
+            let (x, y) = seen::middle(robot);
+            self.way.extend([x, y]);
         }
     }
 
@@ -222,6 +227,14 @@ impl Run {
         let begin = from.saturating_mul(4).min(self.trail.len());
         let end = self.trail.len().min(begin + limits::TRAIL_NUMBERS_MAX);
         &self.trail[begin..end]
+    }
+
+    /// Where the middle of the robot was after each tick, from this one on: metres, x to the right and y up. At most
+    /// [`limits::TRAIL_NUMBERS_MAX`] numbers.
+    pub fn way(&self, from: usize) -> &[f64] {
+        let begin = from.saturating_mul(2).min(self.way.len());
+        let end = self.way.len().min(begin + limits::TRAIL_NUMBERS_MAX);
+        &self.way[begin..end]
     }
 
     /// What rules and program have said and printed since the last time.

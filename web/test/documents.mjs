@@ -1,4 +1,4 @@
-// Runs the examples of docs/user/studio.md that are marked `js studio`, in a folder that has the package and a project.
+// Runs the examples of docs/user/web-package.md that are marked `js studio`, in a folder that has the package and a project.
 //
 // usage: node documents.mjs PAGE OUT
 //

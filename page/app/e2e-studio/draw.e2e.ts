@@ -146,6 +146,34 @@ test('a program drawn with the mouse is judged as its original', async () => {
   await page.context().close();
 });
 
+test('a run is seen: the block that works, the way, the verdict of the rules', async () => {
+  const root = join(import.meta.dirname, '../../..');
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await page.getByLabel('Open').setInputFiles(join(root, 'examples/diagrams/line.qrs'));
+  await page.getByRole('heading', { name: 'line.qrs' }).waitFor();
+  await page.getByLabel('Load a world').setInputFiles(join(root, 'examples/dataflow/line.xml'));
+  await page.getByText('The world is that of line.xml.').waitFor();
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  await page.getByLabel('Speed').selectOption('10');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await expect.poll(() => page.locator('.lit').count()).toBeGreaterThan(0);
+  await expect
+    .poll(async () => parseFloat((await page.locator('.bar .number').textContent()) ?? ''))
+    .toBeGreaterThan(12);
+  await page.getByRole('button', { name: 'Pause' }).click();
+  const paused = await page.locator('.bar .number').textContent();
+  await shot(page, 'run');
+  await page.getByRole('button', { name: 'Step' }).click();
+  await expect.poll(() => page.locator('.bar .number').textContent()).not.toBe(paused);
+  await page.getByLabel('Speed').selectOption('fastest');
+  await page.getByRole('button', { name: 'Go on' }).click();
+  await page.getByText('The task is done.').waitFor();
+  await page.getByText('after 34.83 s').waitFor();
+  expect(await page.locator('.lit').count()).toBe(0);
+  await page.context().close();
+});
+
 test('what is drawn is taken back, made again, copied, and found as it was left', async () => {
   const page = await look.open(site.url);
   await node(page, 'Initial Node').waitFor();

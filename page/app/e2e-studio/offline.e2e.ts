@@ -13,11 +13,12 @@ afterAll(() => look?.end());
 
 test('once it was open it works without its server', async () => {
   const site = await Site.start();
+  const own = site.url;
   const outside: string[] = [];
   const page = await look.open(site.url, {}, (made) =>
     made.on('request', (request) => {
       const url = request.url();
-      if (!url.startsWith(site.url) && !/^(data|blob):/.test(url)) outside.push(url);
+      if (!url.startsWith(own) && !/^(data|blob):/.test(url)) outside.push(url);
     }),
   );
   const blocks = page.locator('.svelte-flow__node');

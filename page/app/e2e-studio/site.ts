@@ -7,7 +7,7 @@ import { createServer, type Server } from 'node:http';
 import { join, normalize, resolve } from 'node:path';
 import type { Draft } from '../src/studio/engine/package';
 
-const SITE = resolve(process.env['STUDIO'] ?? join(import.meta.dirname, '../../../target/web/site'));
+export const SITE = resolve(process.env['STUDIO'] ?? join(import.meta.dirname, '../../../target/web/site'));
 const PACKAGE = resolve(
   process.env['TRIK_STUDIO_PACKAGE'] ?? join(import.meta.dirname, '../../../target/web/package'),
 );
@@ -29,14 +29,14 @@ export class Site {
   /** Paths that were asked for. */
   readonly asked: string[] = [];
 
-  private constructor(extra: Record<string, string | Uint8Array>) {
+  private constructor(folder: string) {
     this.#server = createServer((request, response) => {
       const path = normalize(decodeURIComponent(new URL(request.url ?? '', 'http://site').pathname));
       this.asked.push(path);
       const name = path.replace(/^\/school\/studio\//, '') || 'index.html';
       response.setHeader('content-type', TYPES[name.split('.').at(-1) ?? ''] ?? 'application/octet-stream');
       try {
-        response.end(extra[name] ?? readFileSync(join(SITE, name)));
+        response.end(readFileSync(join(folder, name)));
       } catch {
         response.statusCode = 404;
         response.end();
@@ -44,9 +44,8 @@ export class Site {
     });
   }
 
-  /** Serves; `extra` are files beside those of the studio. */
-  static async start(extra: Record<string, string | Uint8Array> = {}): Promise<Site> {
-    const site = new Site(extra);
+  static async start(folder = SITE): Promise<Site> {
+    const site = new Site(folder);
     await new Promise<void>((done) => site.#server.listen(0, '127.0.0.1', done));
     return site;
   }

@@ -52,6 +52,8 @@ mod rerecord;
 mod rig;
 /// Programs with text as solutions.
 mod scripts;
+/// The studio, copied for web servers.
+mod site;
 mod tasks;
 /// What is said to a person, and what is refused.
 mod words;

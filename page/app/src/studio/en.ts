@@ -5,6 +5,7 @@ export const en = {
   untitled: 'untitled.qrs',
   loading: 'The studio is being loaded.',
   broken: (why: string) => `The studio does not work in this browser: ${why}`,
+  noTask: (why: string) => `The task of this page is not there: ${why}`,
   file: 'File',
   blank: 'New',
   open: 'Open',

@@ -8,7 +8,8 @@ export interface Kept {
 }
 
 const STORE = 'projects';
-const KEY = 'last';
+/** Each page of a server has its own, so that two tasks do not meet. */
+const KEY = location.pathname;
 
 function opened(): Promise<IDBDatabase> {
   return new Promise((done, failed) => {

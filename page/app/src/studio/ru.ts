@@ -7,6 +7,7 @@ export const ru: Words = {
   untitled: 'без имени.qrs',
   loading: 'Студия загружается.',
   broken: (why) => `В этом браузере студия не работает: ${why}`,
+  noTask: (why) => `Задания этой страницы нет: ${why}`,
   file: 'Файл',
   blank: 'Новый',
   open: 'Открыть',

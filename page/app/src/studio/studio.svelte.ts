@@ -27,6 +27,8 @@ export class Studio {
   /** What was done. */
   notice = $state('');
   isReady = $state(false);
+  /** There is a task: its world stays. */
+  hasTask = $state(false);
   isSaved = $state(true);
   readonly #drafts: Remote<DraftCalls>;
   readonly #byKind = $derived(new Map(this.palette.map((block) => [block.kind, block])));
@@ -80,19 +82,35 @@ export class Studio {
       this.refusal = words.broken(String(error));
       return;
     }
+    await this.#beginTask();
     if (isLink(hash)) {
       const shared = fromLink(hash);
       if (shared) await this.open(shared.name, shared.bytes);
       else this.refusal = words.linkWrong;
     }
-    const left = this.drawing ? undefined : await kept();
-    if (left && !this.drawing) {
+    const left = this.drawing && !this.hasTask ? undefined : await kept();
+    if (left && !isLink(hash)) {
       await this.open(left.name, left.bytes);
       if (this.drawing) this.notice = words.kept(left.name);
       this.isSaved = false;
     }
     if (!this.drawing) await this.blank();
     this.isReady = true;
+  }
+
+  /** The task of the page, which `trik site --task` has named in it. */
+  async #beginTask(): Promise<void> {
+    const named = document.querySelector<HTMLMetaElement>('meta[name=trik-task]');
+    if (!named) return;
+    try {
+      const answer = await fetch(named.content);
+      if (!answer.ok) throw new Error(`${answer.status}`);
+      await this.open(named.dataset['name'] ?? named.content, new Uint8Array(await answer.arrayBuffer()));
+      await this.#drafts.call('setTask');
+      this.hasTask = true;
+    } catch (error) {
+      this.refusal = words.noTask(String(error));
+    }
   }
 
   async blank(): Promise<void> {

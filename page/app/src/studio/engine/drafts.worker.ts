@@ -22,6 +22,8 @@ export interface Looks {
 
 let draft: web.Draft | undefined;
 let locale: Locale = 'en';
+/** The world of the task, in which everything is judged; undefined: there is none. */
+let task: string | undefined;
 
 function now(diagram: string): Drawing {
   const state = must().about();
@@ -44,6 +46,16 @@ function begin(answer: ReturnType<typeof web.blank>): Drawing | string {
   if (!answer.ok) return said(answer.error.problems);
   draft?.free();
   draft = answer.value;
+  if (task === undefined) return now('');
+  // It is there from the beginning: nobody takes it back.
+  const name = draft.about().name;
+  const changed = draft.apply({ do: 'world', text: task }, locale);
+  const saved = changed.ok ? draft.save() : changed;
+  const opened = saved.ok ? web.edit(name, saved.value, { locale }) : saved;
+  draft.free();
+  draft = undefined;
+  if (!opened.ok) return said(opened.error.problems);
+  draft = opened.value;
   return now('');
 }
 
@@ -72,7 +84,8 @@ const calls = {
     const saved = must().save();
     return saved.ok ? saved.value : said(saved.error.problems);
   },
-  world: () => must().world() ?? '',
+  /** What is open is the task: its world is that of everything from now on. */
+  setTask: () => (task = must().world()),
   /** What is wrong with it, and the program as text from the diagram of this name on. */
   look(wanted: Language | 'sentences', diagram: string): Looks {
     const findings = must().lint(locale);

@@ -61,6 +61,7 @@ export interface Run {
   progress(): Progress;
   scene(): Scene;
   state(): State;
+  way(from: number): Float64Array;
   news(): News;
   display(): Uint8Array;
   end(): void;

@@ -10,6 +10,8 @@ export interface Seen {
   state: State;
   messages: Message[];
   printed: string[];
+  /** The places of the robot after each tick since the last look, x and y in turn, in metres. */
+  way: Float64Array;
   /** Only if what stands still has changed. */
   scene: Scene | undefined;
   /** Only at the end. */
@@ -23,6 +25,7 @@ let project: web.Project | undefined;
 let run: web.Run | undefined;
 let looks = 0;
 let scene = '';
+let ticks = 0;
 
 function said(findings: Finding[]): string {
   return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
@@ -39,7 +42,17 @@ function see(progress: Progress): Seen {
     scene = text;
   }
   looks += 1;
-  return { progress, state: run.state(), messages, printed, scene: changed, outcome: run.outcome() };
+  const way = run.way(ticks);
+  ticks += way.length / 2;
+  return {
+    way,
+    progress,
+    state: run.state(),
+    messages,
+    printed,
+    scene: changed,
+    outcome: run.outcome(),
+  };
 }
 
 const calls = {
@@ -50,6 +63,7 @@ const calls = {
     run = project = undefined;
     looks = 0;
     scene = '';
+    ticks = 0;
     const opened = web.open(name, bytes, { locale, ...(diagram ? { diagram } : {}) });
     if (!opened.ok) return said(opened.error.problems);
     project = opened.value;

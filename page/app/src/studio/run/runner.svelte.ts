@@ -4,6 +4,8 @@
 
 import { SAID_LINES_MAX } from '../../limits';
 import { language } from '../../words';
+import type { Around } from '../../world/around';
+import { Trail } from '../../world/trail';
 import type { Scene as WorldScene, WorldState } from '../../world/types';
 import type { Judged, Message, Scene, State } from '../engine/facts';
 import { Remote } from '../engine/remote';
@@ -32,8 +34,7 @@ export class Runner {
   refusal = $state('');
   speed = $state(1);
   seed = $state(1);
-  /** The view has no other way of the robot than the one that it draws itself. */
-  readonly around = undefined;
+  readonly trail = new Trail();
   #remote: Remote<RunCalls> | undefined;
   #frame = 0;
   #last = 0;
@@ -41,6 +42,12 @@ export class Runner {
   #isAsked = false;
 
   constructor(private readonly studio: Studio) {}
+
+  /** For the view: the way has all ticks, not only those that it was drawn at. */
+  get around(): Around {
+    const { scene, world: state, trail } = this;
+    return { scene, state, trail, isGround: false, look: () => undefined };
+  }
 
   /** Blocks in which threads are. */
   get lit(): ReadonlySet<string> {
@@ -94,6 +101,7 @@ export class Runner {
     cancelAnimationFrame(this.#frame);
     this.isRunning = false;
     this.refusal = '';
+    this.trail.clear();
     const bytes = await this.studio.bytes();
     if (!bytes) return undefined;
     this.#remote ??= new Remote<RunCalls>(
@@ -135,7 +143,8 @@ export class Runner {
     this.#isAsked = false;
   }
 
-  #take({ progress, state, messages, printed, scene, outcome }: Seen): void {
+  #take({ progress, state, messages, printed, way, scene, outcome }: Seen): void {
+    for (let at = 0; at + 1 < way.length; at += 2) this.trail.step(0, way[at] ?? NaN, way[at + 1] ?? NaN);
     if (scene) this.scene = shown(scene);
     this.state = state;
     this.world = stateOf(state);

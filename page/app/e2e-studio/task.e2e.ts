@@ -1,0 +1,65 @@
+// A page with a task, as `trik site --task` makes it.
+
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { afterAll, beforeAll, expect, test } from 'vitest';
+import { Look } from '../e2e/robot.js';
+import { SITE, Site, library } from './site';
+
+const ROOT = resolve(import.meta.dirname, '../../..');
+const TRIK = process.env['TRIK'] ?? join(ROOT, 'target/debug/trik');
+
+let look: Look;
+let home: string;
+let site: Site;
+
+beforeAll(async () => {
+  look = await Look.start();
+  home = mkdtempSync(join(tmpdir(), 'trik-task-'));
+  const { edit } = await library();
+  const line = edit('line.qrs', new Uint8Array(readFileSync(join(ROOT, 'examples/diagrams/line.qrs'))));
+  if (!line.ok) throw new Error('no example');
+  const text = readFileSync(join(ROOT, 'examples/dataflow/line.xml'), 'utf8');
+  expect(line.value.apply({ do: 'world', text })).toMatchObject({ ok: true });
+  const saved = line.value.save();
+  if (!saved.ok) throw new Error('no save');
+  writeFileSync(join(home, 'follow.qrs'), saved.value);
+  execFileSync(TRIK, ['site', join(home, 'out'), '--studio', SITE, '--task', join(home, 'follow.qrs')]);
+  site = await Site.start(join(home, 'out'));
+});
+afterAll(async () => {
+  await look?.end();
+  await site?.end();
+  rmSync(home, { recursive: true, force: true });
+});
+
+test('the task is open, its world stays, and a program of a pupil is judged in it', async () => {
+  const page = await look.open(site.url);
+  await page.getByRole('heading', { name: 'follow.qrs' }).waitFor();
+  expect(await page.getByRole('button', { name: 'Load a world' }).count()).toBe(0);
+  expect(await page.getByRole('button', { name: 'Take back' }).isDisabled()).toBe(true);
+  await page.getByLabel('Speed').selectOption('fastest');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.getByText('The task is done.').waitFor();
+  // What comes from elsewhere is in the world of the task, too, and a new program.
+  await page.getByLabel('Open').setInputFiles(join(ROOT, 'examples/diagrams/line.qrs'));
+  await page.getByRole('heading', { name: 'line.qrs' }).waitFor();
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.getByText('The task is done.').waitFor();
+  await page.getByRole('button', { name: 'New', exact: true }).click();
+  await page.getByRole('heading', { name: 'untitled.qrs' }).waitFor();
+  await page.getByLabel('Connect to').waitFor({ state: 'detached' });
+  await page.locator('.svelte-flow__node').first().click();
+  await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
+  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page
+    .getByText(/^The task is not done/)
+    .or(page.getByText('The task is not done.'))
+    .first()
+    .waitFor();
+  expect(look.complaints).toEqual([]);
+  await page.context().close();
+});
