@@ -302,6 +302,18 @@ impl Run {
         }
     }
 
+    /// Puts a new version of its program into a run with a debugger: what stays keeps its state, and no motor moves by it.
+    #[wasm_bindgen(unchecked_return_type = "Answer<DebugReport>")]
+    pub fn patch(&mut self, project: &Project) -> JsValue {
+        match self.0.patch(&project.0) {
+            Ok(told) => good(&parsed(&told)),
+            Err(why) => {
+                let findings = Some(project.0.findings());
+                bad(&why, &project.0.name, findings, self.0.locale())
+            }
+        }
+    }
+
     /// What the debugger tells by itself since the last call.
     #[wasm_bindgen(unchecked_return_type = "DebugReport[]")]
     pub fn reports(&mut self) -> JsValue {

@@ -125,6 +125,14 @@ pub struct Refused {
     pub verdict: Verdict,
 }
 
+/// Where diagrams run here.
+pub fn world(settings: &Settings) -> World {
+    World::Simulated {
+        mailbox: false,
+        gamepad: settings.deeds.is_some(),
+    }
+}
+
 /// Puts a project into its world.
 ///
 /// # Errors
@@ -159,15 +167,12 @@ pub fn stage(project: &Project, wish: &Wish) -> Result<Staged, Box<Refused>> {
     let is_debugging = wish.is_debugging;
     let program = match &project.program {
         Opened::Diagram(opened) => {
-            let world = World::Simulated {
-                mailbox: false,
-                gamepad: wish.settings.deeds.is_some(),
-            };
-            let lowered = lower(&opened.project, world).map_err(|problem| Refused {
-                lines: vec![problem.in_locale(locale)],
-                failure: Failure::Program(vec![problem]),
-                verdict: Verdict::Structure,
-            })?;
+            let lowered =
+                lower(&opened.project, world(&wish.settings)).map_err(|problem| Refused {
+                    lines: vec![problem.in_locale(locale)],
+                    failure: Failure::Program(vec![problem]),
+                    verdict: Verdict::Structure,
+                })?;
             task.plug_in(&opened.project, &lowered.program);
             let program = Rc::new(lowered.program);
             match is_debugging {

@@ -4,18 +4,22 @@
 //! verdict are those of the judge; orders to a debugger are those of `trik debug`.
 
 use crate::failure::Failure;
-use crate::judged::{Machine, Refused, Staged, Wish, message, stage, told};
+use crate::judged::{self, Machine, Staged, Wish, message, stage, told, world};
 use crate::project::{Answer, Project};
 use crate::{limits, words};
 use lang_constraint::{Entry, Level};
+use lang_dataflow::machine::patch as flow;
+
+use lang_diagram::machine::patch as diagram;
 use lang_diagram::ports::Sort;
 use lang_text::problem::{Locale, Problem};
 use serde_json::{Map, Value, json};
-use sim::judge::debugged;
+use sim::judge::debugged::{self, Refused, Version};
 use sim::judge::track::Group;
 use sim::judge::{Clock, Outcome, Progress, Running, Settings, Spot, Trial, devices};
 use sim::show::seen;
 use std::time::Duration;
+use studio::program::Program;
 
 /// A run between its beginning and its verdict, and after it.
 pub struct Run {
@@ -56,7 +60,8 @@ impl Run {
             // Somebody looks at it, and may let it stand for an hour.
             wish.settings.longest = Duration::MAX;
             wish.settings.is_showing = true;
-            let staged = stage(project, &wish).map_err(|refused: Box<Refused>| refused.failure)?;
+            let staged =
+                stage(project, &wish).map_err(|refused: Box<judged::Refused>| refused.failure)?;
             Ok(Self::of(project.clone(), staged, wish.settings))
         });
         (begun, locale)
@@ -292,6 +297,34 @@ impl Run {
         Ok(answer)
     }
 
+    /// Puts a new version of its program into the run, between two ticks: what stays keeps its state. What has changed, as JSON.
+    ///
+    /// # Errors
+    /// It has no debugger or is over, the version has mistakes, or a thread is where the version has nothing. Nothing has
+    /// changed then.
+    pub fn patch(&mut self, project: &Project) -> Result<String, Failure> {
+        let Machine::Debugged(program) = &mut self.machine else {
+            return Err(Failure::Request(words::no_debugger()));
+        };
+        let Stage::Runs(trial) = &mut self.stage else {
+            return Err(Failure::Request(words::run_is_over()));
+        };
+        let version = match &project.program {
+            Program::Diagram(opened) => {
+                let version = diagram::Version::of(&opened.project, world(&self.settings));
+                Version::Diagram(version.map_err(|why| refused(&Refused::Diagram(why)))?)
+            }
+            Program::Flow(flow, _) | Program::Text(flow) => {
+                Version::Flow(flow.ready().map_err(Failure::Program)?.into())
+            }
+        };
+        let patched = debugged::patch(trial, program, &version);
+        let patched = patched.map_err(|why| refused(&why))?;
+        self.project = project.clone();
+        self.settle();
+        Ok(patched)
+    }
+
     /// What its debugger tells by itself since the last time: JSON, a list.
     pub fn reports(&mut self) -> String {
         match &mut self.machine {
@@ -308,6 +341,20 @@ impl Run {
     /// What is run.
     pub fn project(&self) -> &Project {
         &self.project
+    }
+}
+
+/// Why a version is not taken.
+fn refused(why: &Refused) -> Failure {
+    let problems = match why {
+        Refused::Diagram(why) => why.problems(),
+        Refused::Flow(flow::Refused::Ended) => &[],
+        Refused::Flow(flow::Refused::Mistakes(problems)) => problems,
+        Refused::OtherLanguage => return Failure::Request(words::other_language()),
+    };
+    match problems {
+        [] => Failure::Request(words::run_is_over()),
+        problems => Failure::Program(problems.to_vec()),
     }
 }
 

@@ -155,3 +155,16 @@ pub(crate) fn wrong_change(field: &str) -> Words {
         ),
     }
 }
+
+/// A new version of a program that has ended.
+pub(crate) fn run_is_over() -> Words {
+    Words::new("the run is over", "запуск закончен")
+}
+
+/// A new version in another language.
+pub(crate) fn other_language() -> Words {
+    Words::new(
+        "a diagram cannot take the place of a program of data flow, nor the other way round",
+        "диаграмма не может заменить потоковую программу, и наоборот",
+    )
+}

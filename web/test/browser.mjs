@@ -86,5 +86,6 @@ try {
   await gone;
   server.close();
   server.closeAllConnections();
-  rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+  // Its helpers write for a while after it has gone.
+  rmSync(profile, { recursive: true, force: true, maxRetries: 20 });
 }

@@ -20,9 +20,37 @@ function random(seed) {
   };
 }
 
+/** What a person may draw in a file, whatever is in it: each change is taken back without a trace. */
+function drawn(name, bytes) {
+  const begun = studio.edit(name, bytes);
+  if (!begun.ok) return;
+  const draft = begun.value;
+  const [first] = draft.about().diagrams;
+  const before = JSON.stringify(draft.sheet(first?.id ?? ''));
+  const blocks = draft.sheet(first?.id ?? '')?.blocks.map(({ id }) => id) ?? [];
+  const changes = [
+    { do: 'add', diagram: first?.id, ...draft.copy(blocks.slice(0, 20)).value },
+    { do: 'move', places: blocks.slice(0, 5).map((id, at) => ({ id, at: [at * 50, -at] })) },
+    { do: 'connect', from: blocks[0], to: blocks.at(-1), guard: '<&>' },
+    { do: 'remove', ids: blocks.slice(0, 3) },
+    { do: 'removeDiagram', diagram: first?.id },
+    { do: 'world', text: '<root>' },
+    { do: 'set', id: blocks[0], property: 'from', value: 'qrm:/' },
+  ];
+  for (const change of changes) draft.apply(change);
+  draft.lint();
+  draft.names();
+  const saved = draft.save();
+  assert.ok(!saved.ok || studio.edit(name, saved.value).ok, name);
+  while (draft.undo());
+  assert.equal(JSON.stringify(draft.sheet(first?.id ?? '')), before, name);
+  draft.free();
+}
+
 /** All that can be asked of a file, in bounded time. */
 function everything(name, bytes, options = {}) {
   assert.equal(studio.lint(name, bytes).ok, true, name);
+  drawn(name, bytes);
   const opened = studio.open(name, bytes);
   if (!opened.ok) {
     assert.ok(opened.error.problems.length > 0 && opened.error.problems[0].message, name);
@@ -153,6 +181,7 @@ const strange = [null, 1, 'x', [], circle, throwing, Symbol('a'), () => 1, 10n, 
   { toJSON: () => undefined }, { field: 'x'.repeat(60 << 20) }];
 const good = new Uint8Array(readFileSync(first));
 const project = studio.open(first, good).value;
+const draft = studio.edit(first, good).value;
 let refused = 0;
 for (const one of strange) {
   for (const answer of [
@@ -160,6 +189,9 @@ for (const one of strange) {
     studio.open(first, good, one), studio.lint(first, good, one), project.show(one), project.generate(one),
     project.generate('python', one), project.run({ modelSeconds: 1, ...(typeof one === 'object' && one !== throwing ? one : {}) }),
     project.judge(one === null ? { modelSeconds: 1, x: 1 } : one),
+    studio.edit(one, good), studio.edit(first, one), studio.blank(one), studio.blank('a', { kit: one ?? 1 }), draft.apply(one),
+    draft.apply({ do: one }), draft.apply({ do: 'add', diagram: one, blocks: one, links: one }),
+    draft.apply({ do: 'move', places: [{ id: one, at: one }] }), draft.copy(one), draft.project(one), studio.palette(one),
   ]) {
     assert.equal(typeof answer.ok, 'boolean');
     if (!answer.ok) {
@@ -182,6 +214,8 @@ for (const count of [-1, NaN, Infinity, 1e12, 0.5]) {
 }
 run.free();
 project.free();
+assert.equal(draft.sheet(long), null);
+draft.free();
 assert.ok(refused > 100, `only ${refused}`);
 
 // It still does what it should.

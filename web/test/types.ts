@@ -1,5 +1,17 @@
 // Every call of the package with its types; it is compiled and never run.
-import { lint, open, type Answer, type Finding, type Judged, type Project, type State } from 'trik-studio-web';
+import {
+  blank,
+  edit,
+  lint,
+  open,
+  palette,
+  type Answer,
+  type Change,
+  type Finding,
+  type Judged,
+  type Project,
+  type State,
+} from 'trik-studio-web';
 
 function must<T>(answer: Answer<T>): T {
   if (answer.ok) {
@@ -18,6 +30,9 @@ export function everything(name: string, bytes: Uint8Array, field: string): [Jud
   const judged: Judged = must(project.judge({ field, seed: 2, trajectory: true, inputs: ['1'] }));
   const run = must(project.run({ field, debug: true }));
   must(run.order('attach'));
+  must(run.patch(project));
+  const places: Float64Array = run.way(0);
+  console.log(places.length);
   while (run.tick(2) === 'runs') {
     const [x, y, degrees] = run.state().world.robots[0]?.at ?? [0, 0, 0];
     const way: Float64Array = run.trail(x + y + degrees);
@@ -38,3 +53,18 @@ export const wrong = (project: Project) => project.generate('basic');
 export const strange = (project: Project) => project.judge({ time: 5 });
 // @ts-expect-error And an answer may be an error.
 export const careless = (project: Project) => project.judge().value;
+
+export function drawing(name: string, bytes: Uint8Array, changes: Change[]): Uint8Array {
+  const draft = must(bytes.length > 0 ? edit(name, bytes, { locale: 'ru' }) : blank(name, { kit: 'trikV6Kit' }));
+  const titles: string[] = must(palette({ locale: 'ru' })).map(({ title }) => title);
+  for (const change of changes) must(draft.apply(change, 'ru'));
+  const { diagrams, undo } = draft.about();
+  const sheet = draft.sheet(diagrams[0]?.id ?? '', 'ru');
+  const copied = must(draft.copy(sheet?.blocks.map(({ id }) => id) ?? []));
+  console.log(titles, undo, copied.links.length, draft.world(), draft.names()[0]?.is, draft.undo(), draft.redo());
+  const findings: Finding[] = draft.lint('ru');
+  must(draft.project({ locale: 'ru' })).free();
+  const saved = must(draft.save());
+  draft.free();
+  return findings.length > 0 ? new Uint8Array() : saved;
+}

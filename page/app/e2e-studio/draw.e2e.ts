@@ -161,16 +161,40 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await expect
     .poll(async () => parseFloat((await page.locator('.bar .number').textContent()) ?? ''))
     .toBeGreaterThan(12);
-  await page.getByRole('button', { name: 'Pause' }).click();
-  const paused = await page.locator('.bar .number').textContent();
+  // A coefficient is changed while it drives: the run goes on, with the new one.
+  await node(page, /^Function$/)
+    .nth(0)
+    .click();
+  const body = page.getByLabel('Properties').getByRole('textbox').first();
+  await body.fill('kp = 0.7\nki = 0.02\nkd = 1.5');
+  await body.press('Enter');
+  await body.fill('kp = 0.7\nki = 0.02\nkd = ');
+  await body.press('Enter');
+  await page.getByText('The run goes on with the program as it was').waitFor();
+  await body.fill('kp = 0.7\nki = 0.02\nkd = 1.5');
+  await body.press('Enter');
+  await page.getByText('The run goes on with the program as it was').waitFor({ state: 'detached' });
+  // A breakpoint holds the program and its world before a block, and steps go from block to block.
+  await node(page, 'Timer').click();
+  await page.getByRole('button', { name: 'Breakpoint' }).click();
+  await page.getByRole('button', { name: 'Go on' }).waitFor();
+  expect(await page.locator('.lit strong').textContent()).toBe('Timer');
   await shot(page, 'run');
+  const held = await page.locator('.bar .number').textContent();
   await page.getByRole('button', { name: 'Step' }).click();
-  await expect.poll(() => page.locator('.bar .number').textContent()).not.toBe(paused);
+  await expect.poll(() => page.locator('.lit strong').textContent()).toBe('Function');
+  await page.getByRole('button', { name: 'Breakpoint' }).click();
   await page.getByLabel('Speed').selectOption('fastest');
   await page.getByRole('button', { name: 'Go on' }).click();
   await page.getByText('The task is done.').waitFor();
-  await page.getByText('after 34.83 s').waitFor();
+  await page.getByText(/after 3[45]\.\d\d s/).waitFor();
+  expect(await page.locator('.bar .number').textContent()).not.toBe(held);
   expect(await page.locator('.lit').count()).toBe(0);
+  // From the beginning it is the run of `trik check`.
+  await page.keyboard.press('Escape');
+  for (let change = 0; change < 3; change++) await page.keyboard.press('Control+z');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.getByText('after 34.83 s').waitFor();
   await page.context().close();
 });
 

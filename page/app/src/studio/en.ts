@@ -46,7 +46,7 @@ export const en = {
   subprogramName: (number: number) => `Subprogram ${number}`,
   sheet: (name: string) => `The diagram ${name}`,
   sheetKeys:
-    'Tab goes from block to block, Enter chooses, arrows move, Delete removes; Ctrl+Z takes back, Ctrl+C and Ctrl+V copy.',
+    'Tab goes from block to block, Enter chooses, arrows move, Delete removes; B sets a breakpoint; Ctrl+Z takes back, Ctrl+C and Ctrl+V copy.',
   empty: 'Drag blocks here, or click on one in the list.',
   linked: (from: string, to: string, guard: string) =>
     guard ? `Link from ${from} to ${to}: ${guard}` : `Link from ${from} to ${to}`,
@@ -100,6 +100,9 @@ export const en = {
   pause: 'Pause',
   goOn: 'Go on',
   step: 'Step',
+  stepHint: 'To the next block',
+  breakpoint: 'Breakpoint',
+  notInForce: (why: string) => `The run goes on with the program as it was: ${why}`,
   end: 'End',
   speed: 'Speed',
   seed: 'Seed',

@@ -47,7 +47,7 @@ export const ru: Words = {
   subprogramName: (number) => `Подпрограмма ${number}`,
   sheet: (name) => `Диаграмма ${name}`,
   sheetKeys:
-    'Tab — от блока к блоку, Enter — выбрать, стрелки — двигать, Delete — удалить; Ctrl+Z — отменить, Ctrl+C и Ctrl+V — копировать.',
+    'Tab — от блока к блоку, Enter — выбрать, стрелки — двигать, Delete — удалить; B — точка останова, Ctrl+Z — отменить, Ctrl+C и Ctrl+V — копировать.',
   empty: 'Перетащите сюда блоки или нажмите на блок в списке.',
   linked: (from, to, guard) =>
     guard ? `Связь от «${from}» к «${to}»: ${guard}` : `Связь от «${from}» к «${to}»`,
@@ -103,6 +103,9 @@ export const ru: Words = {
   pause: 'Пауза',
   goOn: 'Дальше',
   step: 'Шаг',
+  stepHint: 'К следующему блоку',
+  breakpoint: 'Точка останова',
+  notInForce: (why) => `Выполняется прежняя программа: ${why}`,
   end: 'Закончить',
   speed: 'Скорость',
   seed: 'Случайность',

@@ -22,6 +22,8 @@ export class Studio {
   /** Ids of blocks and links. */
   chosen = $state.raw<ReadonlySet<string>>(new Set());
   language = $state<Language | 'sentences'>('sentences');
+  /** Ids of blocks before which a run stops. */
+  breakpoints = $state.raw<ReadonlySet<string>>(new Set());
   /** What was not done, and why. */
   refusal = $state('');
   /** What was done. */
@@ -231,6 +233,13 @@ export class Studio {
     if (typeof saved !== 'string') return saved;
     this.refusal = saved;
     return undefined;
+  }
+
+  /** A run stops before this block, or does so no longer. */
+  toggleBreakpoint(id: string): void {
+    const all = new Set(this.breakpoints);
+    if (!all.delete(id)) all.add(id);
+    this.breakpoints = all;
   }
 
   /** Shows the program in another language. */

@@ -5,6 +5,8 @@ import type {
   Answer,
   BlankOptions,
   Change,
+  DebugAnswer,
+  DebugReport,
   DraftState,
   DrawnSheet,
   Finding,
@@ -63,6 +65,8 @@ export interface Run {
   state(): State;
   way(from: number): Float64Array;
   news(): News;
+  order(order: string): Answer<DebugAnswer>;
+  patch(project: Project): Answer<DebugReport>;
   display(): Uint8Array;
   end(): void;
   outcome(): Judged | undefined;

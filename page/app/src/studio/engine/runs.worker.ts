@@ -57,20 +57,42 @@ function see(progress: Progress): Seen {
 
 const calls = {
   /** A text says why nothing runs. */
-  begin(name: string, bytes: Uint8Array, diagram: string, seed: number, locale: Locale): Seen | string {
+  begin(name: string, bytes: Uint8Array, seed: number, breakpoints: string[], locale: Locale): Seen | string {
     run?.free();
     project?.free();
     run = project = undefined;
     looks = 0;
     scene = '';
     ticks = 0;
-    const opened = web.open(name, bytes, { locale, ...(diagram ? { diagram } : {}) });
+    const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
     project = opened.value;
-    const begun = project.run({ locale, seed });
+    const begun = project.run({ locale, seed, debug: true });
     if (!begun.ok) return said(begun.error.problems);
     run = begun.value;
+    run.order('attach');
+    for (const id of breakpoints) run.order(`break ${id}`);
     return see(run.progress());
+  },
+  /** What a debugger is told, as `trik debug` sends it; a text says why it is not done. */
+  order(order: string): Seen | string {
+    if (!run) throw new Error('nothing runs');
+    const told = run.order(order);
+    if (!told.ok) return said(told.error.problems);
+    return told.value.done ? see(run.progress()) : told.value.why;
+  },
+  /** Breakpoints are at these blocks, and at no others. */
+  stopAt(breakpoints: string[]): void {
+    run?.order('clear all');
+    for (const id of breakpoints) run?.order(`break ${id}`);
+  },
+  /** Puts a new version into the run; a text says why it stays as it is. */
+  patch(name: string, bytes: Uint8Array, locale: Locale): string {
+    const opened = web.open(name, bytes, { locale });
+    if (!opened.ok) return said(opened.error.problems);
+    const patched = run?.patch(opened.value);
+    opened.value.free();
+    return patched && !patched.ok ? said(patched.error.problems) : '';
   },
   tick(count: number): Seen {
     if (!run) throw new Error('nothing runs');

@@ -15,8 +15,6 @@ import { words } from '../words';
 
 /** Model time of one tick. */
 const TICK_MS = 10;
-/** Ticks of one step by hand. */
-const STEP_TICKS = 10;
 /** Ticks of one call at the greatest speed: about a picture's time. */
 const FASTEST_TICKS = 500;
 export const FASTEST = Infinity;
@@ -30,7 +28,10 @@ export class Runner {
   /** Lines of rules and program, the newest last. */
   said = $state.raw<Message[]>([]);
   isRunning = $state(false);
-  isPaused = $state(false);
+  /** The program is held before a block. */
+  isHeld = $state(false);
+  /** The changed program is not in force, and why. */
+  lag = $state('');
   refusal = $state('');
   speed = $state(1);
   seed = $state(1);
@@ -69,21 +70,54 @@ export class Runner {
     this.outcome = undefined;
     this.#take(seen);
     this.isRunning = seen.progress !== 'over';
-    this.isPaused = false;
     this.#last = performance.now();
     this.#owed = 0;
     this.#next();
   }
 
-  pause(is: boolean): void {
-    this.isPaused = is;
-    this.#last = performance.now();
-    if (!is) this.#next();
+  /** Holds the program before its next block; the world stands still meanwhile. */
+  async pause(): Promise<void> {
+    await this.#order('pause');
   }
 
+  async goOn(): Promise<void> {
+    await this.#order('continue');
+  }
+
+  /** To the next block. */
   async step(): Promise<void> {
-    this.isPaused = true;
-    await this.#tick(STEP_TICKS);
+    await this.#order('step');
+  }
+
+  /** Puts the program as it is drawn now into the run. */
+  async change(): Promise<void> {
+    if (!this.#remote || !this.isRunning) return;
+    const bytes = await this.studio.bytes();
+    if (!bytes || !this.isRunning) return;
+    try {
+      const why = await this.#remote.call('patch', this.studio.name, bytes, language);
+      this.lag = why ? words.notInForce(why) : '';
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** Breakpoints are those of the studio from now on. */
+  async stopAt(breakpoints: ReadonlySet<string>): Promise<void> {
+    if (this.isRunning) await this.#remote?.call('stopAt', [...breakpoints]);
+  }
+
+  async #order(order: string): Promise<void> {
+    if (!this.#remote || !this.isRunning) return;
+    try {
+      const seen = await this.#remote.call('order', order);
+      if (typeof seen === 'string') this.refusal = seen;
+      else this.#take(seen);
+    } catch (error) {
+      this.#fail(error);
+    }
+    this.#last = performance.now();
+    this.#next();
   }
 
   async end(): Promise<void> {
@@ -100,7 +134,7 @@ export class Runner {
   async #begin(): Promise<Seen | undefined> {
     cancelAnimationFrame(this.#frame);
     this.isRunning = false;
-    this.refusal = '';
+    this.refusal = this.lag = '';
     this.trail.clear();
     const bytes = await this.studio.bytes();
     if (!bytes) return undefined;
@@ -108,7 +142,14 @@ export class Runner {
       new Worker(new URL('../engine/runs.worker.ts', import.meta.url), { type: 'module' }),
     );
     try {
-      const begun = await this.#remote.call('begin', this.studio.name, bytes, '', this.seed, language);
+      const begun = await this.#remote.call(
+        'begin',
+        this.studio.name,
+        bytes,
+        this.seed,
+        [...this.studio.breakpoints],
+        language,
+      );
       if (typeof begun !== 'string') return begun;
       this.refusal = words.notRun(begun);
     } catch (error) {
@@ -119,7 +160,7 @@ export class Runner {
 
   #next(): void {
     cancelAnimationFrame(this.#frame);
-    if (!this.isRunning || this.isPaused) return;
+    if (!this.isRunning || this.isHeld) return;
     this.#frame = requestAnimationFrame((now) => {
       // A page that was hidden does not make up for it.
       const passed = Math.min(now - this.#last, 100);
@@ -147,6 +188,7 @@ export class Runner {
     for (let at = 0; at + 1 < way.length; at += 2) this.trail.step(0, way[at] ?? NaN, way[at + 1] ?? NaN);
     if (scene) this.scene = shown(scene);
     this.state = state;
+    this.isHeld = progress === 'held';
     this.world = stateOf(state);
     const lines = printed.map((text): Message => ({ level: 'log', ms: state.ms, place: '', text }));
     if (messages.length + lines.length > 0)
