@@ -142,6 +142,10 @@ pub fn read(text: &str) -> Result<Change, Failure> {
             name: fields.text("name")?,
             value: fields.text("value")?,
         },
+        "call" => Change::Call {
+            id: fields.text("id")?,
+            diagram: fields.text("diagram")?,
+        },
         "addDiagram" => Change::AddDiagram {
             kind: match &*fields.text("kind")? {
                 "main" => DiagramKind::Main,

@@ -17,6 +17,7 @@ use lang_diagram::show;
 use lang_expr::names::{Kind, is_own};
 use lang_text::problem::{Locale, Problem};
 use serde_json::{Value, json};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use studio::findings::Findings;
 use studio::lint;
@@ -71,7 +72,7 @@ impl Draft {
             };
             Ok(Self {
                 name: name.to_owned(),
-                editor: Editor::blank(kit, seed),
+                editor: Editor::blank(kit, locale, seed),
                 found: Vec::new(),
             })
         });
@@ -119,6 +120,7 @@ impl Draft {
             "undo": self.editor.undo_count(),
             "redo": self.editor.redo_count(),
             "hasWorld": project.world.is_some(),
+            "world": number_of(project.world.as_deref()),
         })
     }
 
@@ -191,6 +193,15 @@ impl Draft {
         written.map_err(|why| Failure::Program(vec![why]))
     }
 
+    /// The same file with nothing compressed, to be compressed as a whole: it takes little room then.
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    pub fn stored(&self) -> Result<Vec<u8>, Failure> {
+        let written = self.editor.save().write_stored();
+        written.map_err(|why| Failure::Program(vec![why]))
+    }
+
     /// It as it is now, to be shown, written as text, judged and run. Options as those of [`Project::open`].
     pub fn project(&self, options: &str) -> Answer<Project> {
         let mut locale = Locale::default();
@@ -214,6 +225,13 @@ impl Draft {
         });
         (opened, locale)
     }
+}
+
+/// A number that another text most likely has not.
+fn number_of(text: Option<&str>) -> u32 {
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    hasher.finish() as u32
 }
 
 fn block(block: &Block, callee: Option<&Diagram>, locale: Locale) -> Value {

@@ -118,6 +118,8 @@ export interface DraftState {
   undo: number;
   redo: number;
   hasWorld: boolean;
+  /** Another number for another world. */
+  world: number;
 }
 
 export interface DrawnDiagram {
@@ -192,6 +194,7 @@ export type Change =
   | { do: 'reconnect'; link: string; from: string; to: string }
   | { do: 'set'; id: string; property: string; value: string }
   | { do: 'argument'; id: string; name: string; value: string }
+  | { do: 'call'; id: string; diagram: string }
   | { do: 'addDiagram'; kind: 'main' | 'subprogram'; name: string }
   | { do: 'rename'; diagram: string; name: string }
   | { do: 'parameters'; diagram: string; parameters: Parameter[] }

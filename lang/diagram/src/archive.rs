@@ -85,6 +85,14 @@ pub fn pack(entries: &[Entry]) -> Result<Vec<u8>, Problem> {
     fill(zip::Packer::new(), entries)
 }
 
+/// The same with nothing compressed, to be compressed as a whole: what small files repeat takes little room then.
+///
+/// # Errors
+/// As [`pack`].
+pub fn pack_stored(entries: &[Entry]) -> Result<Vec<u8>, Problem> {
+    fill(zip::Packer::storing(), entries)
+}
+
 /// The same as an OpenDocument file has it: its type comes first, not packed, as the piece `mimetype`.
 ///
 /// # Errors

@@ -3,13 +3,14 @@
 //! Owns what each change does to the objects of a save, and the way back. What a change does not name stays as it came, also
 //! what nobody here understands. Knows no meaning of a block: what is wrong with a drawing is found by [`super::check`].
 
+use super::blocks;
 use super::objects::{self, Object, ROOT};
 use super::project::{DiagramKind, Parameter};
 use super::read::{Meta, VERSION, VERSION_KEY};
 use super::save::Save;
 use crate::limits;
 use lang_expr::Kit;
-use lang_text::problem::Problem;
+use lang_text::problem::{Locale, Problem};
 
 mod changes;
 mod pen;
@@ -23,8 +24,6 @@ use changes::carry_out;
 use pen::{Ids, Pen, Step};
 pub use piece::{Drawn, Piece, Wire};
 
-/// The name of a new main diagram, as the editor gives it.
-const MAIN_NAME: &str = "Robot's Behaviour Diagram";
 /// Which kit a save is for.
 const KIT_KEY: &str = "lastKitId";
 
@@ -83,6 +82,13 @@ pub enum Change {
         name: String,
         /// The text of its expression.
         value: String,
+    },
+    /// A block calls another subprogram; what it gave parameters of the same names stays.
+    Call {
+        /// The id of the block, a `Subprogram`.
+        id: String,
+        /// The id of the diagram of the subprogram.
+        diagram: String,
     },
     /// A new diagram, without blocks.
     AddDiagram {
@@ -143,8 +149,8 @@ impl Editor {
         }
     }
 
-    /// A project with one main diagram, in which a program begins and ends.
-    pub fn blank(kit: Kit, seed: u128) -> Self {
+    /// A project with one main diagram, in which a program begins and ends; its names are in this language.
+    pub fn blank(kit: Kit, locale: Locale, seed: u128) -> Self {
         let mut objects = objects::Objects::default();
         let root = Object {
             id: ROOT.to_owned(),
@@ -159,11 +165,15 @@ impl Editor {
         let mut blank = Self::new(Save::made(objects, meta), seed);
         let mut pen = Pen::new(&mut blank.save, &mut blank.ids);
         pen.meta().keys.insert(KIT_KEY.to_owned(), kit.id().into());
-        let made = pen.diagram(DiagramKind::Main, MAIN_NAME);
-        let start = Drawn::of("InitialNode", (100.0, 200.0));
-        let end = Drawn::of("FinalNode", (400.0, 200.0));
+        let made = pen.diagram(DiagramKind::Main, words::main_name(locale));
+        let block = |kind: &str, x: f64| Drawn {
+            name: blocks::find(kind)
+                .map_or("", |row| row.shown_in(locale))
+                .to_owned(),
+            ..Drawn::of(kind, (x, 200.0))
+        };
         let piece = Piece {
-            blocks: vec![start, end],
+            blocks: vec![block("InitialNode", 100.0), block("FinalNode", 400.0)],
             links: Vec::new(),
         };
         // Both are known blocks.

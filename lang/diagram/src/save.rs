@@ -4,7 +4,7 @@
 //! here understands. A save of an old version stays as it was until something is changed; then all of it is written as
 //! the present version has it.
 
-use super::archive::{Archive, Container};
+use super::archive::{self, Archive, Container};
 use super::objects::{self, Kind, Object, Objects};
 use super::project::Project;
 use super::read::{self, Meta};
@@ -145,7 +145,15 @@ impl Save {
     /// # Errors
     /// More files or bytes than a zip can count.
     pub fn write(&self) -> Result<Vec<u8>, Problem> {
-        write::write(self)
+        archive::pack(&write::entries(self)?)
+    }
+
+    /// The same with nothing compressed, for those who compress it as a whole.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_stored(&self) -> Result<Vec<u8>, Problem> {
+        archive::pack_stored(&write::entries(self)?)
     }
 }
 

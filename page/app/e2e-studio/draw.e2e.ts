@@ -82,6 +82,15 @@ async function saved(page: Page, name: string): Promise<Uint8Array> {
   return new Uint8Array(readFileSync(file));
 }
 
+/** How many projects the browser keeps. */
+const KEPT = `new Promise((done) => {
+  const opened = indexedDB.open('trik-studio', 1);
+  opened.onsuccess = () => {
+    const count = opened.result.transaction('projects').objectStore('projects').count();
+    count.onsuccess = () => (opened.result.close(), done(count.result));
+  };
+})`;
+
 async function shot(page: Page, name: string): Promise<void> {
   if (process.env['SHOTS']) await page.screenshot({ path: join(process.env['SHOTS'], `studio-${name}.png`) });
 }
@@ -217,18 +226,22 @@ test('what is drawn is taken back, made again, copied, and found as it was left'
   expect(await page.getByRole('button', { name: 'Take back' }).isDisabled()).toBe(true);
   await page.keyboard.press('Control+y');
   await expect.poll(() => node(page, /^Timer/).count()).toBe(1);
-  // Once it is kept, another page of the same person has it.
+  // A page that is loaded again has it, and so has another one once this is closed, but not before.
   await page.getByText('not saved').waitFor();
-  const again = await page.context().newPage();
-  await expect
-    .poll(async () => {
-      await again.goto(site.url);
-      await node(again, 'Initial Node').waitFor();
-      return node(again, /^Timer/).count();
-    })
-    .toBe(1);
+  await expect.poll(() => page.evaluate(KEPT)).toBe(1);
+  await page.goto('about:blank');
+  await page.goto(site.url);
+  await node(page, /^Timer/).waitFor();
+  const beside = await page.context().newPage();
+  await beside.goto(site.url);
+  await node(beside, 'Initial Node').waitFor();
+  expect(await node(beside, /^Timer/).count()).toBe(0);
+  await page.close();
+  const again = await beside.context().newPage();
+  await again.goto(site.url);
+  await node(again, /^Timer/).waitFor();
   await again.getByText('as it was when this page was left').waitFor();
-  await page.context().close();
+  await again.context().close();
 });
 
 test('by keys alone a block is added, written into, linked and removed', async () => {

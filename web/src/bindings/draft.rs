@@ -159,6 +159,15 @@ impl Draft {
         }
     }
 
+    /// The same file with nothing compressed, to be compressed as a whole: it takes little room then.
+    #[wasm_bindgen(unchecked_return_type = "Answer<Uint8Array>")]
+    pub fn stored(&self) -> JsValue {
+        match self.0.stored() {
+            Ok(bytes) => good(&Uint8Array::from(&bytes[..]).into()),
+            Err(why) => bad(&why, &self.0.name, None, Locale::default()),
+        }
+    }
+
     /// It as it is now, to be shown, written as text, judged and run. The project has to be freed.
     #[wasm_bindgen(unchecked_return_type = "Answer<Project>")]
     pub fn project(

@@ -95,6 +95,8 @@ pub(super) struct Packer {
     inner: ZipWriter<Cursor<Vec<u8>>>,
     count: usize,
     bytes: u64,
+    /// Files are compressed.
+    is_packing: bool,
 }
 
 impl Packer {
@@ -103,12 +105,21 @@ impl Packer {
             inner: ZipWriter::new(Cursor::default()),
             count: 0,
             bytes: 0,
+            is_packing: true,
+        }
+    }
+
+    /// One whose files are not compressed.
+    pub(super) fn storing() -> Self {
+        Self {
+            is_packing: false,
+            ..Self::new()
         }
     }
 
     /// Adds a file, or a folder if the name ends with `/`.
     pub(super) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Problem> {
-        let method = match bytes.is_empty() {
+        let method = match bytes.is_empty() || !self.is_packing {
             true => CompressionMethod::Stored,
             false => CompressionMethod::Deflated,
         };

@@ -31,8 +31,12 @@ pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String
             value,
         } => set(pen, id, property, value)?,
         Change::Argument { id, name, value } => argument(pen, id, name, value)?,
+        Change::Call { id, diagram } => call(pen, id, diagram)?,
         Change::AddDiagram { kind, name } => {
             named(name)?;
+            if *kind == DiagramKind::Subprogram {
+                free(pen, "", name)?;
+            }
             return Ok(vec![pen.diagram(*kind, name)?]);
         }
         Change::Rename { diagram, name } => rename(pen, diagram, name)?,
@@ -114,6 +118,17 @@ pub(super) fn carried(text: &str) -> Result<(), Problem> {
     writable(text)
 }
 
+/// No other subprogram has this name: a person could not say which one a block calls.
+fn free(pen: &Pen<'_>, id: &str, name: &str) -> Result<(), Problem> {
+    let own = pen.logical_id(id);
+    match subprograms(pen).get(name) {
+        Some(other) if Some(other) != own.as_ref() => {
+            Err(Problem::error(words::same_subprogram(name)))
+        }
+        Some(_) | None => Ok(()),
+    }
+}
+
 fn remove(pen: &mut Pen<'_>, ids: &[String]) -> Result<(), Problem> {
     let mut gone: Vec<String> = Vec::new();
     let mut seen = HashSet::new();
@@ -130,11 +145,7 @@ fn remove(pen: &mut Pen<'_>, ids: &[String]) -> Result<(), Problem> {
             }
         }
     }
-    // Links first: the blocks at their ends forget them.
-    gone.sort_by_key(|id| objects::element(id) != LINK);
-    for id in &gone {
-        pen.remove_pair(id);
-    }
+    pen.remove_pairs(&gone);
     Ok(())
 }
 
@@ -257,6 +268,27 @@ fn argument(pen: &mut Pen<'_>, id: &str, name: &str, value: &str) -> Result<(), 
     Ok(())
 }
 
+fn call(pen: &mut Pen<'_>, id: &str, callee: &str) -> Result<(), Problem> {
+    if kind_of(diagram(pen, callee)?) != Some(DiagramKind::Subprogram) {
+        return Err(missing(callee, words::no_subprogram()));
+    }
+    if block(pen, id)?.element() != "Subprogram" {
+        return Err(missing(id, words::no_call()));
+    }
+    let given = pen
+        .logical(id)
+        .and_then(|one| one.property("dynamicProperties"));
+    let given = read::parameters::actual(given.unwrap_or_default()).unwrap_or_default();
+    let given: Vec<(String, String)> = given.into_iter().map(|one| (one.name, one.value)).collect();
+    if let Some(caller) = pen.logical_id(id) {
+        pen.forget_call(&caller);
+    }
+    match pen.logical_id(callee) {
+        Some(callee) => piece::call(pen, id, &callee, &given),
+        None => Ok(()),
+    }
+}
+
 /// The formal parameters of a logical diagram.
 pub(super) fn parameters(logical: &Object) -> Vec<Parameter> {
     let labels = logical.property("labels").unwrap_or_default();
@@ -278,7 +310,9 @@ pub(super) fn written_arguments(all: &[Argument]) -> String {
 
 fn rename(pen: &mut Pen<'_>, id: &str, name: &str) -> Result<(), Problem> {
     named(name)?;
-    diagram(pen, id)?;
+    if kind_of(diagram(pen, id)?) == Some(DiagramKind::Subprogram) {
+        free(pen, id, name)?;
+    }
     pen.rename(id, name);
     for call in pen.calls_of(id) {
         pen.rename(&call, name);
@@ -330,11 +364,9 @@ fn remove_diagram(pen: &mut Pen<'_>, id: &str) -> Result<(), Problem> {
     for call in pen.calls_of(id) {
         pen.set_logical_id(&call, "outgoingExplosion", objects::NOTHING);
     }
-    let inside: Vec<String> = diagram(pen, id)?.children.clone();
-    for child in inside {
-        pen.remove_pair(&child);
-    }
-    pen.remove_pair(id);
+    let inside = diagram(pen, id)?.children.iter();
+    let gone: Vec<String> = inside.chain([&id.to_owned()]).cloned().collect();
+    pen.remove_pairs(&gone);
     Ok(())
 }
 

@@ -11,13 +11,15 @@ use crate::project::DiagramKind;
 use crate::read::Meta;
 use crate::save::{Save, is_link};
 use lang_text::problem::Problem;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// The other side of a change: what the objects were that it touched, or will be.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     objects: BTreeMap<String, Option<Object>>,
     meta: Option<Meta>,
+    /// Whether the save had been changed before.
+    is_edited: bool,
 }
 
 impl Step {
@@ -34,7 +36,7 @@ impl Step {
         if let Some(meta) = &mut self.meta {
             std::mem::swap(meta, &mut save.meta);
         }
-        save.is_edited = true;
+        std::mem::swap(&mut self.is_edited, &mut save.is_edited);
     }
 
     /// Whether nothing was touched.
@@ -118,6 +120,7 @@ impl<'a> Pen<'a> {
         let step = Step {
             objects: self.before,
             meta: self.meta,
+            is_edited: self.save.is_edited,
         };
         if !step.is_empty() {
             self.save.is_edited = true;
@@ -149,7 +152,7 @@ impl<'a> Pen<'a> {
         self.get(self.get(id)?.logical.as_deref()?)
     }
 
-    fn logical_id(&self, id: &str) -> Option<String> {
+    pub(super) fn logical_id(&self, id: &str) -> Option<String> {
         self.get(id)?.logical.clone()
     }
 
@@ -297,42 +300,50 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// Takes a graphical object away, and its logical one if it is of no other.
-    pub(super) fn remove_pair(&mut self, id: &str) {
-        let Some(object) = self.get(id) else {
-            return;
-        };
-        let (parent, logical) = (object.parent.clone(), object.logical.clone());
-        if is_link(object) {
-            self.detach(id);
+    /// Takes graphical objects away, links before the blocks at their ends, and logical ones that are of no other.
+    pub(super) fn remove_pairs(&mut self, ids: &[String]) {
+        for id in ids {
+            if self.get(id).is_some_and(is_link) {
+                self.detach(id);
+            }
         }
-        self.unlist(&parent, id);
-        self.take(id);
-        let Some(logical) = logical else { return };
-        let objects = &self.save.objects;
-        if objects
-            .iter()
-            .any(|one| one.logical.as_ref() == Some(&logical))
-        {
-            return;
+        let gone: HashSet<&str> = ids.iter().map(String::as_str).collect();
+        let mut parents = HashSet::from([ROOT.to_owned()]);
+        let mut logical = HashSet::new();
+        for object in ids.iter().filter_map(|id| self.get(id)) {
+            parents.insert(object.parent.clone());
+            logical.extend(object.logical.clone());
         }
-        let callee = self
-            .get(&logical)
-            .and_then(|one| one.property("outgoingExplosion"))
-            .map(str::to_owned);
-        if let Some(callee) = callee.filter(|id| id != NOTHING)
-            && let Some(callee) = self.get_mut(&callee)
-        {
-            let calls = callee.list_mut("incomingExplosions");
-            calls.retain(|one| *one != logical);
+        for object in self.save.objects.iter() {
+            if let Some(used) = &object.logical
+                && !gone.contains(&*object.id)
+            {
+                logical.remove(used);
+            }
         }
-        self.unlist(ROOT, &logical);
-        self.take(&logical);
+        for id in &logical {
+            self.forget_call(id);
+        }
+        for parent in parents {
+            if let Some(parent) = self.get_mut(&parent) {
+                let stays = |child: &String| !gone.contains(&**child) && !logical.contains(child);
+                parent.children.retain(stays);
+            }
+        }
+        for id in ids.iter().chain(&logical) {
+            self.take(id);
+        }
     }
 
-    fn unlist(&mut self, parent: &str, id: &str) {
-        if let Some(parent) = self.get_mut(parent) {
-            parent.children.retain(|child| child != id);
+    /// A subprogram is called by a logical object no longer.
+    pub(super) fn forget_call(&mut self, caller: &str) {
+        let callee = self
+            .get(caller)
+            .and_then(|one| one.property("outgoingExplosion"));
+        let callee = callee.filter(|id| *id != NOTHING).map(str::to_owned);
+        if let Some(callee) = callee.and_then(|callee| self.get_mut(&callee)) {
+            let calls = callee.list_mut("incomingExplosions");
+            calls.retain(|one| one != caller);
         }
     }
 

@@ -141,7 +141,7 @@ fn draw(
 }
 
 /// Makes a block a call; parameters that get nothing get their defaults.
-fn call(
+pub(super) fn call(
     pen: &mut Pen<'_>,
     id: &str,
     callee: &str,
@@ -164,7 +164,11 @@ fn call(
     }
     pen.rename(id, &name);
     pen.set_logical_id(id, "outgoingExplosion", callee);
-    if !arguments.is_empty() {
+    // Also what another subprogram was given before.
+    let had = pen
+        .logical(id)
+        .is_some_and(|one| one.property("dynamicProperties").is_some());
+    if had || !arguments.is_empty() {
         pen.set_logical(id, "dynamicProperties", &written_arguments(&arguments));
     }
     let caller = pen.get(id).and_then(|one| one.logical.clone());

@@ -8,7 +8,7 @@ use crate::read::read;
 use lang_text::problem::Severity;
 
 fn editor() -> Editor {
-    Editor::blank(Kit::V62, 7)
+    Editor::blank(Kit::V62, Locale::English, 7)
 }
 
 fn project(editor: &Editor) -> Project {
@@ -203,7 +203,7 @@ fn a_copy_goes_into_another_project() {
     connect(&mut first, &wait, &end);
     let piece = first.copy(&[wait, end]);
     assert_eq!((piece.blocks.len(), piece.links.len()), (2, 1));
-    let mut second = Editor::blank(Kit::V6, 8);
+    let mut second = Editor::blank(Kit::V6, Locale::English, 8);
     let diagram = main_of(&second);
     let new = second.apply(&Change::Add { diagram, piece }).unwrap();
     assert_eq!(new.len(), 3);
@@ -267,4 +267,82 @@ fn what_cannot_be_changes_nothing() {
     assert!(wrong.contains("name is missing"), "{wrong}");
     assert_eq!(project(&editor), before);
     assert_eq!(editor.undo_count(), 0);
+}
+
+/// Adds a subprogram with a parameter.
+fn subprogram(editor: &mut Editor, name: &str) -> Result<String, Problem> {
+    let kind = DiagramKind::Subprogram;
+    let name = name.to_owned();
+    let diagram = editor.apply(&Change::AddDiagram { kind, name })?.remove(0);
+    let parameters = vec![Parameter {
+        name: "far".to_owned(),
+        kind: "int".to_owned(),
+        default: "1".to_owned(),
+    }];
+    let change = Change::Parameters {
+        diagram: diagram.clone(),
+        parameters,
+    };
+    editor.apply(&change)?;
+    Ok(diagram)
+}
+
+#[test]
+fn a_block_calls_another_subprogram_and_no_two_have_one_name() {
+    let mut editor = editor();
+    subprogram(&mut editor, "one").unwrap();
+    let other = subprogram(&mut editor, "other").unwrap();
+    let call = Drawn {
+        calls: Some("one".to_owned()),
+        arguments: vec![("far".to_owned(), "7".to_owned())],
+        ..Drawn::of("Subprogram", (0.0, 0.0))
+    };
+    let piece = Piece {
+        blocks: vec![call],
+        links: Vec::new(),
+    };
+    let diagram = main_of(&editor);
+    let id = editor
+        .apply(&Change::Add { diagram, piece })
+        .unwrap()
+        .remove(0);
+    let change = Change::Call {
+        id: id.clone(),
+        diagram: other.clone(),
+    };
+    editor.apply(&change).unwrap();
+    let project = project(&editor);
+    let block = project.diagrams[0].blocks.last().unwrap();
+    assert_eq!(
+        (
+            &*block.name,
+            project.called(block.calls.as_deref().unwrap())
+        ),
+        ("other", Some(2))
+    );
+    assert_eq!(block.arguments[0].value, "7");
+    assert!(editor.save().objects().iter().all(|object| {
+        object.list("incomingExplosions").is_empty() || object.property("name") == Some("other")
+    }));
+    let name = "one".to_owned();
+    let wrong = refused(
+        &mut editor,
+        &Change::Rename {
+            diagram: other,
+            name,
+        },
+    );
+    assert!(
+        wrong.contains("another subprogram is called 'one'"),
+        "{wrong}"
+    );
+    assert!(subprogram(&mut editor, "one").is_err());
+    let main = main_of(&editor);
+    let wrong = refused(&mut editor, &Change::Call { id, diagram: main });
+    assert!(wrong.contains("only a subprogram"), "{wrong}");
+    let undone = editor.undo_count();
+    for _ in 0..undone {
+        assert!(editor.undo());
+    }
+    assert!(editor.save().objects().len() < 8);
 }

@@ -1,9 +1,17 @@
 //! What can be wrong with a change of a drawing, in words.
 
-use lang_text::problem::Words;
+use lang_text::problem::{Locale, Words};
 
 /// The name of every link, as the editor gives it.
 pub(super) const LINK_NAME: &str = "Link";
+
+/// The name of a new main diagram, as the editor gives it.
+pub(super) fn main_name(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "Robot's Behaviour Diagram",
+        Locale::Russian => "Диаграмма поведения робота",
+    }
+}
 
 pub(super) fn no_block() -> Words {
     Words::new(
@@ -101,5 +109,26 @@ pub(super) fn too_many(most: usize) -> Words {
     Words::new(
         format!("a project has at most {most} blocks and links together"),
         format!("в проекте не больше {most} блоков и связей вместе"),
+    )
+}
+
+pub(super) fn same_subprogram(name: &str) -> Words {
+    Words::new(
+        format!("another subprogram is called '{name}'"),
+        format!("другая подпрограмма называется '{name}'"),
+    )
+}
+
+pub(super) fn no_subprogram() -> Words {
+    Words::new(
+        "only a subprogram can be called",
+        "вызвать можно только подпрограмму",
+    )
+}
+
+pub(super) fn no_call() -> Words {
+    Words::new(
+        "this block calls no subprogram",
+        "этот блок не вызывает подпрограмму",
     )
 }

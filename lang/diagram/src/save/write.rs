@@ -1,7 +1,7 @@
 //! A save to the pieces of a zip: changed objects into their documents, changed texts into their files.
 
 use super::Save;
-use crate::archive::{self, Entry};
+use crate::archive::Entry;
 use crate::objects::{self, Object};
 use crate::read::{BLOBS_FILE, META_FILE, Meta, TEMPLATES, WORLD_FILE};
 use lang_text::problem::Problem;
@@ -12,9 +12,10 @@ use std::collections::{BTreeMap, HashMap};
 const OBJECT_INDENT: usize = 2;
 const META_INDENT: usize = 4;
 
-pub(super) fn write(save: &Save) -> Result<Vec<u8>, Problem> {
+/// The files of a save.
+pub(super) fn entries(save: &Save) -> Result<Vec<Entry>, Problem> {
     if !save.is_edited {
-        return archive::pack(&save.archive.entries);
+        return Ok(save.archive.entries.clone());
     }
     let mut entries = Vec::with_capacity(save.archive.entries.len());
     let kept: HashMap<usize, &Object> = save
@@ -34,7 +35,7 @@ pub(super) fn write(save: &Save) -> Result<Vec<u8>, Problem> {
         entries.push(filed(object, document, path(object)));
     }
     write_meta(save, &mut entries)?;
-    archive::pack(&entries)
+    Ok(entries)
 }
 
 /// The file of an object: as it came if the object is as it came.

@@ -74,6 +74,8 @@ export const en = {
   removeParameter: (name: string) => `Remove the parameter ${name}`,
   removeDiagram: 'Remove the diagram',
   kinds: { int: 'whole number', float: 'number', bool: 'true or false', string: 'text' },
+  calls: 'Calls',
+  endedByHand: 'The run was ended.',
   goTo: 'Open the subprogram',
 
   findings: 'Mistakes',
@@ -124,7 +126,6 @@ export const en = {
   nothingRuns: 'The robot stands at its start. Run the program to see it drive.',
   loadWorld: 'Load a world',
   worldLoaded: (name: string) => `The world is that of ${name}.`,
-  noWorld: 'The file has no world.',
 };
 
 export type Words = typeof en;

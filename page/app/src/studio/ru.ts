@@ -75,6 +75,8 @@ export const ru: Words = {
   removeParameter: (name) => `Удалить параметр ${name}`,
   removeDiagram: 'Удалить диаграмму',
   kinds: { int: 'целое число', float: 'число', bool: 'да или нет', string: 'текст' },
+  calls: 'Вызывает',
+  endedByHand: 'Запуск остановлен.',
   goTo: 'Открыть подпрограмму',
 
   findings: 'Ошибки',
@@ -127,5 +129,4 @@ export const ru: Words = {
   nothingRuns: 'Робот стоит на старте. Запустите программу, чтобы он поехал.',
   loadWorld: 'Загрузить мир',
   worldLoaded: (name) => `Мир взят из файла ${name}.`,
-  noWorld: 'В файле нет мира.',
 };

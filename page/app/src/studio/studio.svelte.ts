@@ -9,6 +9,7 @@ import type { Drawing, DraftCalls, Looks } from './engine/drafts.worker';
 import { Remote } from './engine/remote';
 import { arranged } from './draw/arrange';
 import { guardOfNext } from './draw/guards';
+import { pieceOf } from './draw/piece';
 import { keep, kept } from './keep';
 import { fromLink, isLink } from './share';
 import { words } from './words';
@@ -29,6 +30,8 @@ export class Studio {
   /** What was done. */
   notice = $state('');
   isReady = $state(false);
+  /** How many projects were opened here. */
+  opened = $state(0);
   /** There is a task: its world stays. */
   hasTask = $state(false);
   isSaved = $state(true);
@@ -39,6 +42,8 @@ export class Studio {
   #keep: ReturnType<typeof setTimeout> | undefined;
   /** What was copied last, or is being copied. */
   #piece: Promise<Piece> | undefined;
+  /** The same as text, for the clipboard. */
+  #copied = '';
 
   constructor() {
     const worker = new Worker(new URL('./engine/drafts.worker.ts', import.meta.url), { type: 'module' });
@@ -85,19 +90,33 @@ export class Studio {
       return;
     }
     await this.#beginTask();
-    if (isLink(hash)) {
-      const shared = fromLink(hash);
-      if (shared) await this.open(shared.name, shared.bytes);
-      else this.refusal = words.linkWrong;
-    }
-    const left = this.drawing && !this.hasTask ? undefined : await kept();
-    if (left && !isLink(hash)) {
+    const isLinked = isLink(hash) && (await this.openLink(hash));
+    const left = isLinked ? undefined : await kept();
+    if (left) {
+      const why = this.refusal;
       await this.open(left.name, left.bytes);
-      if (this.drawing) this.notice = words.kept(left.name);
+      this.notice = words.kept(left.name);
+      this.refusal = why;
       this.isSaved = false;
     }
     if (!this.drawing) await this.blank();
     this.isReady = true;
+  }
+
+  /** Opens the project of an address, which then is in the page and no longer in its address. Whether there was one. */
+  async openLink(hash: string): Promise<boolean> {
+    history.replaceState(null, '', location.pathname + location.search);
+    const shared = await fromLink(hash);
+    const before = this.opened;
+    if (shared) await this.open(shared.name, shared.bytes);
+    if (this.opened === before) {
+      this.refusal = words.linkWrong;
+      return false;
+    }
+    // Nobody has it as a file yet.
+    this.isSaved = false;
+    this.#keepSoon();
+    return true;
   }
 
   /** The task of the page, which `trik site --task` has named in it. */
@@ -116,8 +135,9 @@ export class Studio {
   }
 
   async blank(): Promise<void> {
+    const why = this.refusal;
     this.#show(await this.#drafts.call('blank', words.untitled));
-    this.isSaved = true;
+    if (!this.isReady) this.refusal = why;
   }
 
   async open(name: string, bytes: Uint8Array): Promise<void> {
@@ -130,9 +150,7 @@ export class Studio {
       this.refusal = words.notOpened(name, opened);
       return;
     }
-    this.refusal = '';
     this.#show(opened);
-    this.isSaved = true;
   }
 
   /** Looks at another diagram. */
@@ -157,16 +175,19 @@ export class Studio {
   }
 
   async undo(): Promise<void> {
+    this.refusal = this.notice = '';
     this.#changed(await this.#drafts.call('undo', this.diagram));
   }
 
   async redo(): Promise<void> {
+    this.refusal = this.notice = '';
     this.#changed(await this.#drafts.call('redo', this.diagram));
   }
 
   /** Adds a block; it is chosen then. `calls` is the name of a subprogram. */
   async add(kind: string, at: [number, number], calls?: string): Promise<void> {
-    const block = { kind, at, ...(calls ? { calls } : {}) };
+    const name = this.facts(kind)?.title ?? '';
+    const block = { kind, at, name, ...(calls ? { calls } : {}) };
     const made = await this.apply({ do: 'add', diagram: this.diagram, blocks: [block], links: [] });
     if (made.length > 0) this.chosen = new Set(made);
   }
@@ -185,18 +206,25 @@ export class Studio {
     await this.apply({ do: 'remove', ids });
   }
 
-  async copy(): Promise<Piece | undefined> {
+  /** Copies what is chosen, over the clipboard of the computer too, so that another page gets it. */
+  async copy(): Promise<void> {
     const ids = [...this.chosen].filter((id) => this.block(id));
-    if (ids.length === 0) return undefined;
+    if (ids.length === 0) return;
     this.#piece = this.#drafts.call('copy', ids);
-    return this.#piece;
+    const text = JSON.stringify(await this.#piece);
+    this.#copied = text;
+    // Without a secure connection there is no clipboard: then it is for this page alone.
+    const clipboard = navigator.clipboard as Clipboard | undefined;
+    await clipboard?.writeText(text).catch(() => undefined);
   }
 
-  /** Puts what was copied a little beside its original; `other` is what comes from another page. */
-  async paste(other?: Piece): Promise<void> {
+  /** Puts what was copied a little beside its original, and again a little beside that. `text` is what the clipboard has. */
+  async paste(text = ''): Promise<void> {
+    const other = text === this.#copied ? undefined : pieceOf(text);
     // Of another page it may be anything; the draft refuses what is no block.
     const piece = other ?? (await this.#piece);
     if (!piece) return;
+    if (other) this.#copied = text;
     const blocks = piece.blocks.map((block) => ({
       ...block,
       at: [block.at[0] + PASTE_SHIFT_PX, block.at[1] + PASTE_SHIFT_PX] as [number, number],
@@ -220,10 +248,12 @@ export class Studio {
     const [diagram] = await this.apply({ do: 'addDiagram', kind: 'subprogram', name });
     if (!diagram) return;
     await this.see(diagram);
-    const blocks: Piece['blocks'] = [
-      { kind: 'InitialNode', at: [100, 200] },
-      { kind: 'FinalNode', at: [400, 200] },
-    ];
+    const block = (kind: string, x: number): Piece['blocks'][number] => ({
+      kind,
+      at: [x, 200],
+      name: this.facts(kind)?.title ?? '',
+    });
+    const blocks = [block('InitialNode', 100), block('FinalNode', 400)];
     await this.apply({ do: 'add', diagram, blocks, links: [] });
   }
 
@@ -233,6 +263,25 @@ export class Studio {
     if (typeof saved !== 'string') return saved;
     this.refusal = saved;
     return undefined;
+  }
+
+  /** The same with nothing compressed. */
+  async stored(): Promise<Uint8Array | undefined> {
+    const saved = await this.#drafts.call('stored');
+    if (typeof saved !== 'string') return saved;
+    this.refusal = saved;
+    return undefined;
+  }
+
+  /** Puts the project into another world, if that is one. */
+  async loadWorld(name: string, text: string): Promise<void> {
+    const why = await this.#drafts.call('wrongWith', text);
+    if (why) {
+      this.refusal = words.notOpened(name, why);
+      return;
+    }
+    await this.apply({ do: 'world', text });
+    if (!this.refusal) this.notice = words.worldLoaded(name);
   }
 
   /** A run stops before this block, or does so no longer. */
@@ -260,8 +309,11 @@ export class Studio {
       this.refusal = drawing;
       return;
     }
-    this.chosen = new Set();
+    this.refusal = this.notice = '';
+    this.chosen = this.breakpoints = new Set();
     this.drawing = drawing;
+    this.isSaved = true;
+    this.opened += 1;
     void this.#lookNow();
   }
 

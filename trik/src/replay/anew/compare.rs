@@ -50,6 +50,10 @@ pub(super) struct Tally {
     waiting: Option<VecDeque<Had>>,
     /// When those were given.
     given: u64,
+    /// What the first bytes gave has been met, and no others have come yet.
+    is_first_met: bool,
+    /// Something has been met.
+    has_met: bool,
     /// The number of the failure that stands in what has come.
     standing: Option<i32>,
 }
@@ -133,6 +137,7 @@ impl Tally {
             self.differ(given, from, what);
         }
         self.given = at;
+        self.is_first_met = false;
         let waiting = self.waiting.get_or_insert_default();
         waiting.clear();
         self.anew += u64::from(matches!(had, Some(Ok(_))));
@@ -155,6 +160,12 @@ impl Tally {
             if errno.is_some() && (errno == self.standing || errno == Some(LEFT)) {
                 return;
             }
+            // The recorder begins to look at a device and at what is made of it one after the other: of one sample more the bytes
+            // are not known.
+            if self.is_first_met && had.is_ok() {
+                self.is_first_met = false;
+                return;
+            }
             let what = match had {
                 Ok(tuple) => format!("recorded is {}, now it is nothing", shown(layouts.0, tuple)),
                 Err((_, why)) => {
@@ -163,6 +174,7 @@ impl Tally {
             };
             return self.differ(at, from, what);
         };
+        self.is_first_met = !std::mem::replace(&mut self.has_met, true);
         match (had, &now) {
             (Ok(before), Ok(now)) => self.measure(at, from, (before, now), layouts),
             (Err((before, _)), Err((now, _))) if before == now => {}
@@ -425,6 +437,13 @@ mod tests {
         assert_eq!(tally.others, 2);
         tally.meet(5, &Err((5, "other words".to_owned())), (&form, &form), 0);
         assert_eq!(tally.others, 2, "the errno is the same");
+        // One sample more at the beginning is of bytes that came before, and no second one.
+        let mut begun = Tally::default();
+        begun.give(1, Some(Ok(vec![7])), 0);
+        for (at, others) in [(2, 0), (3, 0), (4, 1)] {
+            begun.meet(at, &Ok(vec![7]), (&form, &form), 0);
+            assert_eq!(begun.others, others);
+        }
         // What counts from later on does not count before.
         tally.give(6, None, 100);
         tally.meet(7, &Ok(vec![7]), (&form, &form), 100);

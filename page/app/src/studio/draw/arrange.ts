@@ -6,6 +6,10 @@ import type { DrawnSheet } from '../engine/facts';
 
 const COLUMN_PX = 125;
 const ROW_PX = 125;
+/** Columns before a program goes on below. */
+const BAND_COLUMNS = 20;
+/** Blocks of a column before they stand beside each other. */
+const COLUMN_ROWS = 40;
 const LEFT_PX = 100;
 const TOP_PX = 100;
 
@@ -32,12 +36,28 @@ export function arranged(sheet: DrawnSheet): { id: string; at: [number, number] 
     }
   }
   const rows = new Map<number, number>();
-  return sheet.blocks
+  const places = sheet.blocks
     .toSorted((one, other) => (columns.get(one.id) ?? 0) - (columns.get(other.id) ?? 0))
     .map(({ id }) => {
       const column = columns.get(id) ?? 0;
       const row = rows.get(column) ?? 0;
       rows.set(column, row + 1);
-      return { id, at: [LEFT_PX + column * COLUMN_PX, TOP_PX + row * ROW_PX] };
+      return { id, column, row };
     });
+  return places.map(({ id, column, row }) => ({ id, at: placed(column, row, rows) }));
+}
+
+/** A long program goes on below, as lines of a text do; many blocks of one column stand side by side. */
+function placed(column: number, row: number, rows: ReadonlyMap<number, number>): [number, number] {
+  const band = Math.floor(column / BAND_COLUMNS);
+  let above = 0;
+  for (let one = 0; one < band; one++) above += tallest(one * BAND_COLUMNS, rows);
+  const right = (column % BAND_COLUMNS) + Math.floor(row / COLUMN_ROWS) * BAND_COLUMNS;
+  return [LEFT_PX + right * COLUMN_PX, TOP_PX + (above + (row % COLUMN_ROWS)) * ROW_PX];
+}
+
+/** Rows of the band that begins with a column. */
+function tallest(begin: number, rows: ReadonlyMap<number, number>): number {
+  const all = Array.from({ length: BAND_COLUMNS }, (_, at) => rows.get(begin + at) ?? 0);
+  return Math.min(COLUMN_ROWS, Math.max(1, ...all));
 }

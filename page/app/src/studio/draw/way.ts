@@ -13,6 +13,8 @@ type Spot = [number, number];
 
 export interface Route {
   d: string;
+  /** Where it begins and ends. */
+  ends: [Spot, Spot];
   /** Where the guard stands. */
   label: Spot;
 }
@@ -47,7 +49,8 @@ export function wayOf(from: Box, to: Box, corners: readonly Spot[], both: boolea
     all.length % 2 === 1 && inner.length > 0
       ? (all[(all.length - 1) / 2] ?? [0, 0])
       : [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2];
-  return { d: `M${all.map(([x, y]) => `${round(x)} ${round(y)}`).join('L')}`, label };
+  const d = `M${all.map(([x, y]) => `${round(x)} ${round(y)}`).join('L')}`;
+  return { d, label, ends: [all[0] ?? [0, 0], all.at(-1) ?? [0, 0]] };
 }
 
 /** A place to the right of the middle of the way, as traffic drives. */
@@ -68,7 +71,11 @@ function ring({ x, y, width, height }: Box): Route {
     [x + width / 2, top - far],
     [x + width / 2, top],
   ];
-  return { d: `M${corners.map((corner) => corner.join(' ')).join('L')}`, label: [right + far, top - far] };
+  return {
+    d: `M${corners.map((corner) => corner.join(' ')).join('L')}`,
+    label: [right + far, top - far],
+    ends: [corners[0] ?? [0, 0], corners.at(-1) ?? [0, 0]],
+  };
 }
 
 function round(length: number): number {

@@ -84,6 +84,17 @@ const calls = {
     const saved = must().save();
     return saved.ok ? saved.value : said(saved.error.problems);
   },
+  /** The same with nothing compressed. */
+  stored(): Uint8Array | string {
+    const saved = must().stored();
+    return saved.ok ? saved.value : said(saved.error.problems);
+  },
+  /** What is wrong with a world; empty if it can be run in. */
+  wrongWith(world: string): string {
+    const found = web.lint('world.xml', new TextEncoder().encode(world), { locale });
+    if (!found.ok) return said(found.error.problems);
+    return said(found.value.filter(({ level }) => level === 'error').slice(0, 3));
+  },
   /** What is open is the task: its world is that of everything from now on. */
   setTask: () => (task = must().world()),
   /** What is wrong with it, and the program as text from the diagram of this name on. */

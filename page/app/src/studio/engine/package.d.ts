@@ -46,6 +46,7 @@ export interface Draft {
   copy(ids: string[]): Answer<Piece>;
   world(): string | undefined;
   save(): Answer<Uint8Array>;
+  stored(): Answer<Uint8Array>;
   project(options?: OpenOptions): Answer<Project>;
   free(): void;
 }

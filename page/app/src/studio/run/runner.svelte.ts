@@ -28,6 +28,8 @@ export class Runner {
   /** Lines of rules and program, the newest last. */
   said = $state.raw<Message[]>([]);
   isRunning = $state(false);
+  /** A person has ended the last run. */
+  isEnded = $state(false);
   /** The program is held before a block. */
   isHeld = $state(false);
   /** The changed program is not in force, and why. */
@@ -56,9 +58,10 @@ export class Runner {
     return new Set(threads.map(({ id }) => id));
   }
 
-  /** The world with the robot at its start. */
+  /** The world with the robot at its start; whatever ran is over. */
   async look(): Promise<void> {
-    if (this.isRunning) return;
+    this.outcome = undefined;
+    this.said = [];
     const seen = await this.#begin();
     if (seen) this.#take(seen);
   }
@@ -68,6 +71,7 @@ export class Runner {
     if (!seen) return;
     this.said = [];
     this.outcome = undefined;
+    this.isEnded = false;
     this.#take(seen);
     this.isRunning = seen.progress !== 'over';
     this.#last = performance.now();
@@ -121,6 +125,7 @@ export class Runner {
   }
 
   async end(): Promise<void> {
+    this.isEnded = true;
     if (this.#remote && this.isRunning) this.#take(await this.#remote.call('end'));
   }
 
