@@ -302,11 +302,12 @@ impl Run {
         }
     }
 
-    /// Puts a new version of its program into a run with a debugger: what stays keeps its state, and no motor moves by it.
-    #[wasm_bindgen(unchecked_return_type = "Answer<DebugReport>")]
+    /// Puts a new version of its program into a run with a debugger: what stays keeps its state, and no motor moves by it. What
+    /// has changed, in words.
+    #[wasm_bindgen(unchecked_return_type = "Answer<string>")]
     pub fn patch(&mut self, project: &Project) -> JsValue {
         match self.0.patch(&project.0) {
-            Ok(told) => good(&parsed(&told)),
+            Ok(told) => good(&told.into()),
             Err(why) => {
                 let findings = Some(project.0.findings());
                 bad(&why, &project.0.name, findings, self.0.locale())

@@ -6,17 +6,18 @@
 use crate::change;
 use crate::failure::Failure;
 use crate::options::Options;
-use crate::project::{Answer, Project};
+use crate::project::{self, Answer};
 use crate::words;
 use lang_diagram::check;
 use lang_diagram::edit::{Editor, Piece};
 use lang_diagram::ports::Kit;
-use lang_diagram::project::{Block, Diagram, DiagramKind, Link};
+use lang_diagram::project::{Block, Diagram, DiagramKind, Link, Project};
 use lang_diagram::read::Opened;
 use lang_diagram::show;
 use lang_expr::names::{Kind, is_own};
 use lang_text::problem::{Locale, Problem};
 use serde_json::{Value, json};
+use std::cell::OnceCell;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use studio::findings::Findings;
@@ -31,6 +32,8 @@ pub struct Draft {
     editor: Editor,
     /// What was strange in the file.
     found: Vec<Problem>,
+    /// What it means now; made when it is asked for.
+    meaning: OnceCell<(Project, Vec<Problem>)>,
 }
 
 impl Draft {
@@ -52,6 +55,7 @@ impl Draft {
                     name: name.to_owned(),
                     editor: Editor::new(opened.save, seed),
                     found: opened.problems,
+                    meaning: OnceCell::new(),
                 }),
                 Program::Flow(..) | Program::Text(_) => Err(Failure::Diagram(words::no_drawing())),
             }
@@ -74,14 +78,20 @@ impl Draft {
                 name: name.to_owned(),
                 editor: Editor::blank(kit, locale, seed),
                 found: Vec::new(),
+                meaning: OnceCell::new(),
             })
         });
         (made, locale)
     }
 
+    fn meaning(&self) -> &(Project, Vec<Problem>) {
+        self.meaning.get_or_init(|| self.editor.save().project())
+    }
+
     /// Makes a change, which is an object of JSON: ids of what is new.
     pub fn apply(&mut self, change: &str) -> Result<Value, Failure> {
         let change = change::read(change)?;
+        self.meaning.take();
         let new = self.editor.apply(&change);
         new.map(Value::from)
             .map_err(|why| Failure::Program(vec![why]))
@@ -89,6 +99,7 @@ impl Draft {
 
     /// Takes the last change back, or with `again` makes it once more. Whether there was one.
     pub fn turn_back(&mut self, again: bool) -> bool {
+        self.meaning.take();
         match again {
             false => self.editor.undo(),
             true => self.editor.redo(),
@@ -97,7 +108,7 @@ impl Draft {
 
     /// What it is: diagrams with their parameters, what can be taken back.
     pub fn about(&self) -> Value {
-        let (project, _) = self.editor.save().project();
+        let (project, _) = self.meaning();
         let diagram = |one: &Diagram| {
             let parameters = one.parameters.iter();
             json!({
@@ -131,7 +142,7 @@ impl Draft {
 
     /// A diagram with its blocks and links; null if it has none with this id.
     pub fn sheet(&self, diagram: &str, locale: Locale) -> Value {
-        let (project, _) = self.editor.save().project();
+        let (project, _) = self.meaning();
         let Some(diagram) = project.diagrams.iter().find(|one| one.id == diagram) else {
             return Value::Null;
         };
@@ -150,18 +161,18 @@ impl Draft {
 
     /// Everything that is wrong with it, as `trik lint --json` would find it in the file.
     pub fn lint(&self, locale: Locale) -> Value {
-        let (project, problems) = self.editor.save().project();
-        let found = self.found.iter().cloned().chain(problems).collect();
-        let mut problems = lint::of_project(&project, found);
-        let findings = Findings::new(Some(&project));
+        let (project, problems) = self.meaning();
+        let found = self.found.iter().chain(problems).cloned().collect();
+        let mut problems = lint::of_project(project, found);
+        let findings = Findings::new(Some(project));
         findings.sort(&mut problems);
         Value::Array(findings.json(&self.name, &problems, locale))
     }
 
     /// Names that can stand in its expressions: variables, sensors, functions, constants.
     pub fn names(&self) -> Value {
-        let (project, _) = self.editor.save().project();
-        let names = check::names(&project);
+        let (project, _) = self.meaning();
+        let names = check::names(project);
         let mut all = Vec::new();
         for slot in 0..u32::try_from(names.len()).unwrap_or(u32::MAX) {
             let is = match names.kind(slot) {
@@ -203,7 +214,7 @@ impl Draft {
     }
 
     /// It as it is now, to be shown, written as text, judged and run. Options as those of [`Project::open`].
-    pub fn project(&self, options: &str) -> Answer<Project> {
+    pub fn project(&self, options: &str) -> Answer<project::Project> {
         let mut locale = Locale::default();
         let opened = Options::read(options).and_then(|mut options| {
             locale = options.locale()?;
@@ -214,7 +225,7 @@ impl Draft {
                 lang_dataflow::read::choose(&mut save, &diagram).map_err(Failure::Diagram)?;
             }
             let (project, problems) = save.project();
-            Ok(Project {
+            Ok(project::Project {
                 name: self.name.clone(),
                 program: Program::Diagram(Box::new(Opened {
                     project,

@@ -297,7 +297,7 @@ impl Run {
         Ok(answer)
     }
 
-    /// Puts a new version of its program into the run, between two ticks: what stays keeps its state. What has changed, as JSON.
+    /// Puts a new version of its program into the run, between two ticks: what stays keeps its state. What has changed, in words.
     ///
     /// # Errors
     /// It has no debugger or is over, the version has mistakes, or a thread is where the version has nothing. Nothing has

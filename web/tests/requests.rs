@@ -1,8 +1,10 @@
 //! Requests as JavaScript makes them, without JavaScript: what is answered, and what is refused.
 
 use lang_diagram::sketch::Sketch;
-use serde_json::Value;
+use lang_text::problem::Locale;
+use serde_json::{Value, json};
 use sim::judge::Clock;
+use web::draft::Draft;
 use web::failure::Failure;
 use web::judged::judge;
 use web::project::{Project, lint};
@@ -168,4 +170,136 @@ fn findings_are_told_and_strangers_are_refused() {
     let (told, locale) = project.generate("python", r#"{"goto": true, "locale": "ru"}"#);
     assert_eq!(told.unwrap_err().kind(), "request");
     assert_eq!(locale.name(), "ru");
+}
+
+#[test]
+fn a_project_is_drawn_looked_through_and_judged() {
+    let mut draft = Draft::blank("new.qrs", r#"{"locale": "ru"}"#, 5).0.unwrap();
+    let diagram = draft.about()["diagrams"][0]["id"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let sheet = draft.sheet(&diagram, Locale::English);
+    let id = |at: usize| sheet["blocks"][at]["id"].as_str().unwrap().to_owned();
+    let mut apply = |change: Value| draft.apply(&change.to_string());
+    let block = json!({"kind": "Timer", "at": [200, 200], "properties": {"Delay": "x"}});
+    let new = apply(json!({"do": "add", "diagram": diagram, "blocks": [block]})).unwrap();
+    let timer = new[0].as_str().unwrap().to_owned();
+    for (from, to) in [(id(0), timer.clone()), (timer.clone(), id(1))] {
+        apply(json!({"do": "connect", "from": from, "to": to})).unwrap();
+    }
+    let found = draft.lint(Locale::English);
+    assert_eq!(
+        (
+            &found[0]["level"],
+            &found[0]["object"],
+            &found[0]["property"]
+        ),
+        (
+            &"error".into(),
+            &timer.as_str().into(),
+            &"Delay (ms)".into()
+        )
+    );
+    let set = |value: &str| json!({"do": "set", "id": timer, "property": "Delay", "value": value});
+    draft.apply(&set("500").to_string()).unwrap();
+    assert_eq!(draft.lint(Locale::English), json!([]));
+    assert!(
+        draft
+            .names()
+            .as_array()
+            .unwrap()
+            .contains(&json!({"name": "sensorA1", "is": "sensor"}))
+    );
+    let judged = judged(&draft.project("").0.unwrap(), "");
+    assert_eq!(
+        (&judged["verdict"], &judged["ms"]),
+        (&"ended".into(), &530.into())
+    );
+    // What is taken back is not there, and what was saved before is.
+    let saved = draft.save().unwrap();
+    assert!(draft.turn_back(false) && draft.turn_back(true) && !draft.turn_back(true));
+    assert_eq!(draft.save().unwrap(), saved);
+    let again = Draft::open("new.qrs", saved, "", 6).0.unwrap();
+    assert_eq!(
+        again.sheet(&diagram, Locale::English),
+        draft.sheet(&diagram, Locale::English)
+    );
+    let piece = again.copy(&[timer.clone(), id(1)]);
+    assert_eq!(
+        (
+            piece["blocks"].as_array().unwrap().len(),
+            &piece["links"][0]["to"]
+        ),
+        (2, &1.into())
+    );
+}
+
+#[test]
+fn a_change_that_is_none_is_refused_by_its_field_and_nothing_changes() {
+    let mut draft = Draft::blank("new.qrs", "", 5).0.unwrap();
+    let before = draft.about();
+    let refused = |draft: &mut Draft, change: &str| match draft.apply(change).unwrap_err() {
+        Failure::Request(words) => words.english.to_string(),
+        Failure::Program(problems) => format!("program: {}", problems[0].words.english),
+        other => panic!("{other:?}"),
+    };
+    for (change, field) in [
+        ("[]", "'do'"),
+        ("{", "'do'"),
+        (r#"{"do": "fly"}"#, "'do'"),
+        (r#"{"do": "remove", "ids": "a"}"#, "'ids'"),
+        (r#"{"do": "remove", "ids": [], "more": 1}"#, "'more'"),
+        (
+            r#"{"do": "move", "places": [{"id": "a", "at": [1]}]}"#,
+            "'at'",
+        ),
+        (r#"{"do": "kit", "kit": "ev3"}"#, "'kit'"),
+        (
+            r#"{"do": "remove", "ids": ["a"]}"#,
+            "program: there is no such block",
+        ),
+        (r#"{"do": "world", "text": "<root"}"#, "program: "),
+    ] {
+        let why = refused(&mut draft, change);
+        assert!(why.contains(field), "{change}: {why}");
+    }
+    assert_eq!(draft.about(), before);
+    let flow = Draft::open("a.flow", b"diagram \"a\"".to_vec(), "", 1)
+        .0
+        .unwrap_err();
+    assert_eq!(flow.kind(), "diagram");
+}
+
+#[test]
+fn a_run_takes_a_new_version_of_its_program_and_refuses_a_broken_one() {
+    let project = opened(save("60000"));
+    let mut run = Run::begin(&project, r#"{"debug": true}"#).0.unwrap();
+    run.tick(10);
+    let mut draft = Draft::open("task.qrs", save("60000"), "", 3).0.unwrap();
+    let diagram = draft.about()["diagrams"][0]["id"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let sheet = draft.sheet(&diagram, Locale::English);
+    let motors = sheet["blocks"][1]["id"].as_str().unwrap().to_owned();
+    let mut version = |power: &str| {
+        let set = json!({"do": "set", "id": motors, "property": "Power", "value": power});
+        draft.apply(&set.to_string()).unwrap();
+        draft.project("").0.unwrap()
+    };
+    match run.patch(&version("100 +")) {
+        Err(Failure::Program(problems)) => assert!(!problems.is_empty()),
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(run.tick(1), "runs");
+    let told = run.patch(&version("0 - 100")).unwrap();
+    assert_eq!(told, "5 blocks kept, 0 new, 0 gone");
+    let plain = Run::begin(&project, "").0.unwrap().patch(&project);
+    assert!(matches!(plain, Err(Failure::Request(_))), "no debugger");
+    run.end();
+    assert!(
+        matches!(run.patch(&project), Err(Failure::Request(_))),
+        "over"
+    );
 }

@@ -299,6 +299,53 @@ test('mistakes are shown while they are made, and lead to their block', async ()
   await page.context().close();
 });
 
+test('what is being typed is in the file that Ctrl+S saves', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await page.getByLabel('Delay (ms)').fill('777');
+  const download = page.waitForEvent('download');
+  await page.keyboard.press('Control+s');
+  const file = join(home, 'typed.qrs');
+  await (await download).saveAs(file);
+  const draft = await drafted(new Uint8Array(readFileSync(file)));
+  const blocks = draft.sheet(draft.about().diagrams[0]?.id ?? '')?.blocks ?? [];
+  expect(blocks.find(({ kind }) => kind === 'Timer')?.properties['Delay']).toBe('777');
+  await page.context().close();
+});
+
+test('a link gets another end, and a call another subprogram', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  await link(page, 0, 1);
+  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await node(page, 'Timer').waitFor();
+  await page.getByRole('group', { name: 'Link from Initial Node to Final Node' }).focus();
+  await page.keyboard.press('Enter');
+  const anchor = await page.locator('.anchor').last().boundingBox();
+  const timer = await node(page, 'Timer').boundingBox();
+  if (!anchor || !timer) throw new Error('nothing is seen');
+  await page.mouse.move(anchor.x + anchor.width / 2, anchor.y + anchor.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(timer.x + timer.width / 2, timer.y + timer.height / 2, { steps: 8 });
+  await page.mouse.up();
+  await page.getByRole('group', { name: 'Link from Initial Node to Timer' }).waitFor();
+  // Two subprograms have two names, and a call chooses among them.
+  const main = page.getByRole('button', { name: "Robot's Behaviour Diagram" });
+  for (const name of ['Subprogram 1', 'Subprogram 2']) {
+    await page.getByRole('button', { name: '+ New subprogram' }).click();
+    await page.getByRole('button', { name, exact: true }).waitFor();
+  }
+  await page.getByLabel('Name', { exact: true }).fill('Subprogram 1');
+  await page.keyboard.press('Enter');
+  await page.getByRole('alert').getByText('another subprogram is called').waitFor();
+  await main.click();
+  await page.getByRole('button', { name: 'Add Subprogram 1', exact: true }).click();
+  await page.getByLabel('Calls').selectOption('Subprogram 2');
+  await node(page, 'Subprogram 2').waitFor();
+  await page.context().close();
+});
+
 test.each(['light', 'dark'] as const)('there are no barriers in %s', async (colorScheme) => {
   const page = await look.open(site.url, { colorScheme });
   await node(page, 'Initial Node').waitFor();

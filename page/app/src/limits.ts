@@ -109,3 +109,6 @@ export const KEEP_AFTER_MS = 500;
 export const PASTE_SHIFT_PX = 25;
 /** Lines of what a run has said that are kept. */
 export const SAID_LINES_MAX = 500;
+/** Runs with other random numbers, one after the other on each core. */
+export const MANY_RUNS_MAX = 500;
+export const MANY_WORKERS_MAX = 8;

@@ -228,7 +228,7 @@ fn orphans_are_told_and_not_run() {
         .into_iter()
         .map(|orphan| orphan.kind)
         .collect();
-    assert_eq!(kinds, ["Timer", "ControlFlow", "ControlFlow"]);
+    assert_eq!(kinds, ["ControlFlow", "ControlFlow", "Timer"]);
 }
 
 #[test]

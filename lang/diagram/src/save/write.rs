@@ -30,7 +30,11 @@ pub(super) fn entries(save: &Save) -> Result<Vec<Entry>, Problem> {
             entries.push(changed(entry, at, object)?);
         }
     }
-    for object in save.objects.iter().filter(|object| object.entry.is_none()) {
+    let new = save.objects.iter().filter(|object| object.entry.is_none());
+    let mut new: Vec<&Object> = new.collect();
+    // The same objects make the same file, however they came to be.
+    new.sort_by(|one, other| one.id.cmp(&other.id));
+    for object in new {
         let document = Element::new("object");
         entries.push(filed(object, document, path(object)));
     }

@@ -122,6 +122,18 @@ export const en = {
     broken: 'It cannot be run.',
   },
   after: (seconds: string) => `after ${seconds} s of the world`,
+  manyRuns: 'Many runs',
+  howMany: 'Runs, with the seeds from 1 on',
+  runAll: 'Run all',
+  verdict: 'Verdict',
+  duration: 'Time',
+  manyOf: (count: number, verdict: 'accomplished' | 'ended' | 'failed' | 'broken') =>
+    ({
+      accomplished: `The task is done in ${count}.`,
+      ended: `The program has ended in ${count}.`,
+      failed: `The task is not done in ${count}.`,
+      broken: `It cannot be run in ${count}.`,
+    })[verdict],
   values: 'Values',
   nothingRuns: 'The robot stands at its start. Run the program to see it drive.',
   loadWorld: 'Load a world',

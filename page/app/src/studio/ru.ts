@@ -125,6 +125,18 @@ export const ru: Words = {
     broken: 'Запустить нельзя.',
   },
   after: (seconds) => `через ${seconds} с времени мира`,
+  manyRuns: 'Много запусков',
+  howMany: 'Запусков, со случайностью от 1',
+  runAll: 'Запустить все',
+  verdict: 'Оценка',
+  duration: 'Время',
+  manyOf: (count, verdict) =>
+    ({
+      accomplished: `Задание выполнено: ${count}.`,
+      ended: `Программа закончилась: ${count}.`,
+      failed: `Задание не выполнено: ${count}.`,
+      broken: `Запустить нельзя: ${count}.`,
+    })[verdict],
   values: 'Значения',
   nothingRuns: 'Робот стоит на старте. Запустите программу, чтобы он поехал.',
   loadWorld: 'Загрузить мир',

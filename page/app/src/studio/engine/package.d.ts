@@ -6,7 +6,6 @@ import type {
   BlankOptions,
   Change,
   DebugAnswer,
-  DebugReport,
   DraftState,
   DrawnSheet,
   Finding,
@@ -67,7 +66,7 @@ export interface Run {
   way(from: number): Float64Array;
   news(): News;
   order(order: string): Answer<DebugAnswer>;
-  patch(project: Project): Answer<DebugReport>;
+  patch(project: Project): Answer<string>;
   display(): Uint8Array;
   end(): void;
   outcome(): Judged | undefined;

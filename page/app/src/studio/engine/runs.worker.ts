@@ -18,6 +18,13 @@ export interface Seen {
   outcome: Judged | undefined;
 }
 
+/** What came out of a run that nobody looked at. */
+export interface Whole extends Pick<Judged, 'verdict' | 'ms' | 'totalScore'> {
+  seed: number;
+  /** As that of what is seen. */
+  way: Float64Array;
+}
+
 /** Between two looks at what stands still, in looks at all else. */
 const SCENE_EVERY = 10;
 
@@ -93,6 +100,23 @@ const calls = {
     const patched = run?.patch(opened.value);
     opened.value.free();
     return patched && !patched.ok ? said(patched.error.problems) : '';
+  },
+  /** A whole run with this seed, as fast as it goes; a text says why there is none. */
+  whole(name: string, bytes: Uint8Array, seed: number, locale: Locale): Whole | string {
+    const opened = web.open(name, bytes, { locale });
+    if (!opened.ok) return said(opened.error.problems);
+    const begun = opened.value.run({ locale, seed });
+    opened.value.free();
+    if (!begun.ok) return said(begun.error.problems);
+    const whole = begun.value;
+    // The judge ends it by its own limit of model time.
+    while (whole.tick(6000) === 'runs');
+    const judged = whole.outcome();
+    const way = whole.way(0);
+    whole.free();
+    if (!judged) throw new Error('a run without an end');
+    const { verdict, ms, totalScore } = judged;
+    return { seed, verdict, ms, totalScore, way };
   },
   tick(count: number): Seen {
     if (!run) throw new Error('nothing runs');
