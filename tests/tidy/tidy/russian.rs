@@ -6,7 +6,7 @@ use super::{files, none, root};
 use harness::documents::{Example, examples};
 
 /// Pages that `docs/ru` has under the same name.
-const TRANSLATED: [&str; 8] = [
+const TRANSLATED: [&str; 9] = [
     "docs/teacher/checking.md",
     "docs/teacher/rules.md",
     "docs/user/class.md",
@@ -14,6 +14,7 @@ const TRANSLATED: [&str; 8] = [
     "docs/user/programs.md",
     "docs/user/run.md",
     "docs/user/start.md",
+    "docs/user/studio.md",
     "docs/user/trik-up.md",
 ];
 
