@@ -116,6 +116,13 @@ pub fn read(text: &str) -> Result<Change, Failure> {
             diagram: fields.text("diagram")?,
             piece: piece(&mut fields)?,
         },
+        "insert" => Change::Insert {
+            link: fields.text("link")?,
+            block: match fields.0.remove("block") {
+                Some(block) => drawn(block)?,
+                None => return Err(wrong("block")),
+            },
+        },
         "remove" => Change::Remove {
             ids: fields.texts("ids")?,
         },
@@ -180,17 +187,7 @@ pub fn read(text: &str) -> Result<Change, Failure> {
 fn piece(fields: &mut Fields) -> Result<Piece, Failure> {
     let mut piece = Piece::default();
     for value in fields.list("blocks")? {
-        let mut fields = Fields::of(value)?;
-        let kind = fields.text("kind")?;
-        let place = fields.pair("at")?.ok_or_else(|| wrong("at"))?;
-        let mut drawn = Drawn::of(&kind, place);
-        drawn.name = fields.maybe_text("name")?.unwrap_or_default();
-        drawn.properties = fields.named("properties")?;
-        drawn.size = fields.pair("size")?.unwrap_or(drawn.size);
-        drawn.calls = fields.maybe_text("calls")?;
-        drawn.arguments = fields.named("arguments")?;
-        fields.end()?;
-        piece.blocks.push(drawn);
+        piece.blocks.push(drawn(value)?);
     }
     for value in fields.list("links")? {
         let mut fields = Fields::of(value)?;
@@ -206,6 +203,20 @@ fn piece(fields: &mut Fields) -> Result<Piece, Failure> {
 
 /// Where blocks move to.
 type Places = Vec<(String, (f64, f64))>;
+
+fn drawn(block: Value) -> Result<Drawn, Failure> {
+    let mut fields = Fields::of(block)?;
+    let kind = fields.text("kind")?;
+    let place = fields.pair("at")?.ok_or_else(|| wrong("at"))?;
+    let mut drawn = Drawn::of(&kind, place);
+    drawn.name = fields.maybe_text("name")?.unwrap_or_default();
+    drawn.properties = fields.named("properties")?;
+    drawn.size = fields.pair("size")?.unwrap_or(drawn.size);
+    drawn.calls = fields.maybe_text("calls")?;
+    drawn.arguments = fields.named("arguments")?;
+    fields.end()?;
+    Ok(drawn)
+}
 
 fn places(fields: &mut Fields) -> Result<Places, Failure> {
     let mut places = Vec::new();

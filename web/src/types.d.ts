@@ -188,6 +188,7 @@ export interface PieceBlock {
 /** A change of a drawing; ids are those of a sheet. */
 export type Change =
   | ({ do: 'add'; diagram: string } & Piece)
+  | { do: 'insert'; link: string; block: PieceBlock }
   | { do: 'remove'; ids: string[] }
   | { do: 'move'; places: { id: string; at: [number, number] }[] }
   | { do: 'connect'; from: string; to: string; guard?: string }

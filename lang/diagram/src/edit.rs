@@ -37,6 +37,13 @@ pub enum Change {
         /// What appears.
         piece: Piece,
     },
+    /// A block appears in a link: that ends at it then, and a new link goes on to where it ended.
+    Insert {
+        /// The id of the link.
+        link: String,
+        /// The block.
+        block: Drawn,
+    },
     /// Blocks and links disappear, and with a block the links at it.
     Remove {
         /// Their ids.

@@ -122,7 +122,7 @@ test('a program drawn with the mouse is judged as its original', async () => {
   let count = 2;
   for (const [row, blocks] of rows.entries()) {
     for (const [column, [title, values]] of blocks.entries()) {
-      await drag(page, title, 90 + column * 125, [70, 200, 580][row] ?? 0);
+      await drag(page, title, 90 + column * 125, [110, 230, 570][row] ?? 0);
       await set(page, count, values);
       count += 1;
     }
@@ -170,6 +170,7 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await expect
     .poll(async () => parseFloat((await page.locator('.bar .number').textContent()) ?? ''))
     .toBeGreaterThan(12);
+  await page.getByLabel('Speed').selectOption('0.25');
   // A coefficient is changed while it drives: the run goes on, with the new one.
   await node(page, /^Function$/)
     .nth(0)
@@ -293,6 +294,7 @@ test('mistakes are shown while they are made, and lead to their block', async ()
   await page.getByText(/to mend/).waitFor();
   await expect.poll(() => body.getAttribute('aria-invalid')).toBe('true');
   await node(page, 'Initial Node').click();
+  await page.getByText(/^Mistakes/).click();
   await page.getByRole('region', { name: 'Mistakes' }).getByRole('button').first().click();
   await expect.poll(() => page.getByRole('heading', { name: 'Function' }).count()).toBe(1);
   await shot(page, 'mistake');
@@ -314,10 +316,28 @@ test('what is being typed is in the file that Ctrl+S saves', async () => {
   await page.context().close();
 });
 
-test('a link gets another end, and a call another subprogram', async () => {
+test('a block goes into a link, a link gets another end, and a call another subprogram', async () => {
   const page = await look.open(site.url);
   await node(page, 'Initial Node').waitFor();
   await link(page, 0, 1);
+  const [start, end] = [
+    await node(page, 'Initial Node').boundingBox(),
+    await node(page, 'Final Node').boundingBox(),
+  ];
+  const flow = await page.locator('.svelte-flow').boundingBox();
+  if (!start || !end || !flow) throw new Error('nothing is seen');
+  await drag(page, 'Stop Motors', (start.x + end.x) / 2 + 25 - flow.x, start.y + 25 - flow.y);
+  await page
+    .getByRole('group', { name: 'Link from Stop Motors to Final Node' })
+    .waitFor({ state: 'attached' });
+  await page.getByRole('group', { name: 'Link from Initial Node to Stop Motors' }).focus();
+  await page.keyboard.press('Enter');
+  await page.getByRole('button', { name: 'Add Function', exact: true }).click();
+  await page.getByRole('group', { name: 'Link from Function to Stop Motors' }).waitFor({ state: 'attached' });
+  for (let change = 0; change < 2; change++) await page.keyboard.press('Control+z');
+  await page
+    .getByRole('group', { name: 'Link from Initial Node to Final Node' })
+    .waitFor({ state: 'attached' });
   await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
   await node(page, 'Timer').waitFor();
   await page.getByRole('group', { name: 'Link from Initial Node to Final Node' }).focus();
@@ -329,7 +349,7 @@ test('a link gets another end, and a call another subprogram', async () => {
   await page.mouse.down();
   await page.mouse.move(timer.x + timer.width / 2, timer.y + timer.height / 2, { steps: 8 });
   await page.mouse.up();
-  await page.getByRole('group', { name: 'Link from Initial Node to Timer' }).waitFor();
+  await page.getByRole('group', { name: 'Link from Initial Node to Timer' }).waitFor({ state: 'attached' });
   // Two subprograms have two names, and a call chooses among them.
   const main = page.getByRole('button', { name: "Robot's Behaviour Diagram" });
   for (const name of ['Subprogram 1', 'Subprogram 2']) {

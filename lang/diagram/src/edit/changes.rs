@@ -4,7 +4,7 @@
 
 use super::pen::Pen;
 use super::route::{self, Side};
-use super::{Change, KIT_KEY, piece, words};
+use super::{Change, Drawn, KIT_KEY, Piece, piece, words};
 use crate::blocks;
 use crate::limits;
 use crate::objects::{self, Kind, Object, ROOT};
@@ -19,6 +19,7 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String>, Problem> {
     match change {
         Change::Add { diagram, piece } => return piece::add(pen, diagram, piece),
+        Change::Insert { link, block } => return insert(pen, link, block),
         Change::Remove { ids } => remove(pen, ids)?,
         Change::Move { places } => move_to(pen, places)?,
         Change::Connect { from, to, guard } => {
@@ -116,6 +117,24 @@ pub(super) fn carried(text: &str) -> Result<(), Problem> {
         return Err(Problem::error(words::long_text(text.len(), most)));
     }
     writable(text)
+}
+
+fn insert(pen: &mut Pen<'_>, id: &str, drawn: &Drawn) -> Result<Vec<String>, Problem> {
+    let object = link(pen, id)?;
+    let parent = object.parent.clone();
+    let end = |key| object.property(key).unwrap_or_default().to_owned();
+    let (from, to) = (end("from"), end("to"));
+    let piece = Piece {
+        blocks: vec![drawn.clone()],
+        links: Vec::new(),
+    };
+    let mut new = piece::add(pen, &parent, &piece)?;
+    let Some(middle) = new.first().cloned() else {
+        return Ok(new);
+    };
+    reconnect(pen, id, &from, &middle)?;
+    new.push(connect(pen, &middle, &to, "")?);
+    Ok(new)
 }
 
 /// No other subprogram has this name: a person could not say which one a block calls.

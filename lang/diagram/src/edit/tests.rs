@@ -346,3 +346,27 @@ fn a_block_calls_another_subprogram_and_no_two_have_one_name() {
     }
     assert!(editor.save().objects().len() < 8);
 }
+
+#[test]
+fn a_block_is_put_into_a_link_and_taken_out_of_it_by_one_step() {
+    let mut editor = editor();
+    let blocks = &project(&editor).diagrams[0].blocks;
+    let (start, end) = (blocks[0].id.clone(), blocks[1].id.clone());
+    let link = connect(&mut editor, &start, &end);
+    set(&mut editor, &link, "Guard", "true");
+    let before = project(&editor);
+    let block = Drawn::of("Timer", (250.0, 200.0));
+    let change = Change::Insert { link, block };
+    assert_eq!(editor.apply(&change).unwrap().len(), 2);
+    let diagram = &project(&editor).diagrams[0];
+    let wires = diagram
+        .links
+        .iter()
+        .map(|one| (one.from, one.to, &*one.guard));
+    assert_eq!(
+        wires.collect::<Vec<_>>(),
+        [(Some(0), Some(2), "true"), (Some(2), Some(1), "")]
+    );
+    assert!(editor.undo());
+    assert_eq!(project(&editor), before);
+}

@@ -110,7 +110,11 @@ fn piece(choices: &mut Choices<'_>) -> Piece {
 
 fn change(choices: &mut Choices<'_>, editor: &Editor) -> Change {
     let ids = ids(editor.save());
-    match choices.below(14) {
+    match choices.below(15) {
+        13 => Change::Insert {
+            link: choices.id(&ids.links),
+            block: Drawn::of("Timer", choices.place()),
+        },
         kind @ 0..=7 => of_sheet(choices, &ids, kind),
         kind => of_project(choices, &ids, kind),
     }

@@ -4,7 +4,16 @@
 
 import { language } from '../words';
 import { EDIT_FILE_MB_MAX, KEEP_AFTER_MS, LOOK_AFTER_MS, PASTE_SHIFT_PX } from '../limits';
-import type { Change, DrawnBlock, DrawnSheet, Finding, Language, PaletteBlock, Piece } from './engine/facts';
+import type {
+  Change,
+  DrawnBlock,
+  DrawnLink,
+  DrawnSheet,
+  Finding,
+  Language,
+  PaletteBlock,
+  Piece,
+} from './engine/facts';
 import type { Drawing, DraftCalls, Looks } from './engine/drafts.worker';
 import { Remote } from './engine/remote';
 import { arranged } from './draw/arrange';
@@ -74,6 +83,12 @@ export class Studio {
 
   block(id: string): DrawnBlock | undefined {
     return this.sheet?.blocks.find((block) => block.id === id);
+  }
+
+  /** The link that is chosen, if nothing else is. */
+  get chosenLink(): DrawnLink | undefined {
+    const [id] = this.chosen.size === 1 ? this.chosen : [];
+    return this.sheet?.links.find((link) => link.id === id);
   }
 
   /** What is wrong with a block or link. */
@@ -184,12 +199,15 @@ export class Studio {
     this.#changed(await this.#drafts.call('redo', this.diagram));
   }
 
-  /** Adds a block; it is chosen then. `calls` is the name of a subprogram. */
-  async add(kind: string, at: [number, number], calls?: string): Promise<void> {
+  /** Adds a block, perhaps into a link; it is chosen then. `calls` is the name of a subprogram. */
+  async add(kind: string, at: [number, number], calls?: string, link?: string): Promise<void> {
     const name = this.facts(kind)?.title ?? '';
     const block = { kind, at, name, ...(calls ? { calls } : {}) };
-    const made = await this.apply({ do: 'add', diagram: this.diagram, blocks: [block], links: [] });
-    if (made.length > 0) this.chosen = new Set(made);
+    const change: Change = link
+      ? { do: 'insert', link, block }
+      : { do: 'add', diagram: this.diagram, blocks: [block], links: [] };
+    const made = await this.apply(change);
+    if (made.length > 0) this.chosen = new Set(made.slice(0, 1));
   }
 
   async connect(from: string, to: string): Promise<void> {
