@@ -111,10 +111,20 @@ pub fn read(text: &str) -> Result<Change, Failure> {
     let value = sim::judge::json::read(text).map_err(|_| wrong(""))?;
     let mut fields = Fields::of(value)?;
     let name = fields.text("do")?;
-    let change = match &*name {
+    let change = match of_sheet(&name, &mut fields)? {
+        Some(change) => change,
+        None => of_project(&name, &mut fields)?,
+    };
+    fields.end()?;
+    Ok(change)
+}
+
+/// A change of blocks and links; nothing if none has this name.
+fn of_sheet(name: &str, fields: &mut Fields) -> Result<Option<Change>, Failure> {
+    Ok(Some(match name {
         "add" => Change::Add {
             diagram: fields.text("diagram")?,
-            piece: piece(&mut fields)?,
+            piece: piece(fields)?,
         },
         "insert" => Change::Insert {
             link: fields.text("link")?,
@@ -127,7 +137,7 @@ pub fn read(text: &str) -> Result<Change, Failure> {
             ids: fields.texts("ids")?,
         },
         "move" => Change::Move {
-            places: places(&mut fields)?,
+            places: places(fields)?,
         },
         "connect" => Change::Connect {
             from: fields.text("from")?,
@@ -149,6 +159,13 @@ pub fn read(text: &str) -> Result<Change, Failure> {
             name: fields.text("name")?,
             value: fields.text("value")?,
         },
+        _ => return Ok(None),
+    }))
+}
+
+/// A change of calls, diagrams, world and kit.
+fn of_project(name: &str, fields: &mut Fields) -> Result<Change, Failure> {
+    Ok(match name {
         "call" => Change::Call {
             id: fields.text("id")?,
             diagram: fields.text("diagram")?,
@@ -167,7 +184,7 @@ pub fn read(text: &str) -> Result<Change, Failure> {
         },
         "parameters" => Change::Parameters {
             diagram: fields.text("diagram")?,
-            parameters: parameters(&mut fields)?,
+            parameters: parameters(fields)?,
         },
         "removeDiagram" => Change::RemoveDiagram {
             diagram: fields.text("diagram")?,
@@ -179,9 +196,7 @@ pub fn read(text: &str) -> Result<Change, Failure> {
             kit: Kit::of_id(&fields.text("kit")?).ok_or_else(|| wrong("kit"))?,
         },
         _ => return Err(wrong("do")),
-    };
-    fields.end()?;
-    Ok(change)
+    })
 }
 
 fn piece(fields: &mut Fields) -> Result<Piece, Failure> {
