@@ -129,8 +129,8 @@ fn add_task(
     let bytes = bytes(task).map_err(crate::diagrams::save::Unreadable::File);
     let bytes = must(bytes, task, locale)?;
     let mut hasher = DefaultHasher::new();
-    bytes.hash(&mut hasher);
     let name = task.file_name().unwrap_or_default().to_string_lossy();
+    (&bytes, &name).hash(&mut hasher);
     for (file, content) in files.iter_mut() {
         let text = String::from_utf8_lossy(content).into_owned();
         let changed = match file.as_str() {

@@ -18,6 +18,7 @@ use lang_expr::names::{Kind, is_own};
 use lang_text::problem::{Locale, Problem};
 use serde_json::{Value, json};
 use std::cell::OnceCell;
+use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use studio::findings::Findings;
@@ -187,6 +188,15 @@ impl Draft {
                 all.push(json!({"name": name, "is": is}));
             }
         }
+        let known: HashSet<&str> = (0..)
+            .map_while(|slot| names.kind(slot).map(|_| names.name(slot)))
+            .collect();
+        let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
+        let mut parameters: Vec<&str> = parameters.map(|one| &*one.name).collect();
+        parameters.sort_unstable();
+        parameters.dedup();
+        let new = parameters.into_iter().filter(|name| !known.contains(name));
+        all.extend(new.map(|name| json!({"name": name, "is": "variable"})));
         Value::Array(all)
     }
 

@@ -5,7 +5,7 @@
 use crate::failure::Failure;
 use crate::options::Options;
 use crate::project::Answer;
-use lang_diagram::blocks::{Category, Content, Kits, Property, Row, Type, table};
+use lang_diagram::blocks::{Category, Content, Kits, Property, Row, Silent, Type, table};
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 
@@ -36,6 +36,8 @@ fn row(row: &Row, locale: Locale) -> Value {
             Category::Drawing => "drawing",
         },
         "kits": kits,
+        // It stands in old saves, and nobody draws it again.
+        "isOld": row.silent == Silent::Always,
         "text": row.text,
         "icon": row.icon,
         "properties": row.properties.iter().map(|one| property(one, locale)).collect::<Vec<_>>(),

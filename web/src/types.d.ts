@@ -87,6 +87,8 @@ export interface PaletteBlock {
   category: 'algorithms' | 'actions' | 'wait' | 'drawing';
   /** Which kits have it. */
   kits: string[];
+  /** It is of old saves, and does nothing. */
+  isOld: boolean;
   /** What it does, in English. */
   text: string;
   /** Its picture: pieces of SVG around the origin, in a square of 50. */

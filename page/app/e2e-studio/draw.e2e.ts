@@ -135,14 +135,14 @@ test('a program drawn with the mouse is judged as its original', async () => {
   await page.getByLabel('Speed').selectOption('fastest');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.getByText('The program has ended.').waitFor();
-  const shown = await page.getByText(/after [\d.]+ s of the world/).textContent();
+  const shown = await page.getByText(/Time: [\d.]+ s/).textContent();
   // What was drawn is a file that the judge takes, and takes as long as the original with its world does.
   const { open } = await library();
   const drawn = open('drawn.qrs', await saved(page, 'drawn.qrs'));
   if (!drawn.ok) throw new Error(drawn.error.problems[0]?.message);
   const judged = drawn.value.judge();
   expect(judged.ok && judged.value.verdict).toBe('ended');
-  if (judged.ok) expect(shown).toContain(`after ${(judged.value.ms / 1000).toFixed(2)} s`);
+  if (judged.ok) expect(shown).toContain(`Time: ${(judged.value.ms / 1000).toFixed(2)} s`);
   const example = join(DATA, 'examples/2._AroundTheCorner_encoder.qrs');
   if (existsSync(example) || process.env['TRIK_REQUIRE_DATA'] === '1') {
     const original = open('original.qrs', new Uint8Array(readFileSync(example)));
@@ -197,14 +197,14 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await page.getByLabel('Speed').selectOption('fastest');
   await page.getByRole('button', { name: 'Go on' }).click();
   await page.getByText('The task is done.').waitFor();
-  await page.getByText(/after 3[45]\.\d\d s/).waitFor();
+  await page.getByText(/Time: 3[45]\.\d\d s/).waitFor();
   expect(await page.locator('.bar .number').textContent()).not.toBe(held);
   expect(await page.locator('.lit').count()).toBe(0);
   // From the beginning it is the run of `trik check`.
   await page.keyboard.press('Escape');
   for (let change = 0; change < 3; change++) await page.keyboard.press('Control+z');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
-  await page.getByText('after 34.83 s').waitFor();
+  await page.getByText('Time: 34.83 s').waitFor();
   await page.context().close();
 });
 
@@ -259,6 +259,7 @@ test('by keys alone a block is added, written into, linked and removed', async (
   await page.keyboard.press('Control+a');
   await page.keyboard.type('sensorA');
   await page.getByRole('option', { name: 'sensorA1' }).waitFor();
+  await page.keyboard.press('ArrowDown');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Enter');
   await expect.poll(() => node(page, 'Motors Forward').textContent()).toContain('sensorA1');

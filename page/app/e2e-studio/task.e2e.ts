@@ -56,11 +56,11 @@ test('the task is open, its world stays, and a program of a pupil is judged in i
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.getByText('The task is done.').waitFor();
   await page.getByRole('button', { name: 'New', exact: true }).click();
-  await page.getByRole('heading', { name: 'untitled.qrs' }).waitFor();
-  await page.getByLabel('Connect to').waitFor({ state: 'detached' });
-  await page.locator('.svelte-flow__node').first().click();
-  await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
-  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await page.getByRole('heading', { name: 'follow.qrs' }).waitFor();
+  // The task from its beginning; without its first link it does nothing.
+  await page.getByRole('group', { name: /^Link from Initial Node/ }).focus();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Delete');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.locator('.verdict').getByText('The task is not done.').waitFor();
   expect(look.complaints).toEqual([]);

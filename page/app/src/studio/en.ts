@@ -10,6 +10,7 @@ export const en = {
   blank: 'New',
   open: 'Open',
   save: 'Save',
+  rename: 'Rename',
   link: 'Copy a link',
   linkCopied: 'The link is on the clipboard: it carries the whole project.',
   linkLong: (most: number) =>
@@ -21,6 +22,7 @@ export const en = {
   notOpened: (name: string, why: string) => `${name} is not opened: ${why}`,
   tooLarge: (mb: number) => `the file is larger than ${mb} MiB, which is the most`,
   loseChanges: 'Give up what is not saved',
+  unsavedAsk: 'There are changes that are not saved.',
   cancel: 'Cancel',
   kept: (name: string) => `${name} is as it was when this page was left.`,
   undo: 'Take back',
@@ -62,6 +64,7 @@ export const en = {
   paste: 'Paste',
   connectTo: 'Connect to',
   connect: 'Connect',
+  linkPoint: 'Start of a link',
   guard: 'Guard',
   theLink: 'Link',
   theDiagram: 'Diagram',
@@ -79,6 +82,7 @@ export const en = {
   goTo: 'Open the subprogram',
 
   findings: 'Mistakes',
+  none: 'none',
   noFindings: 'Nothing is wrong.',
   counted: (errors: number, warnings: number) =>
     [errors > 0 && `${errors} to mend`, warnings > 0 && `${warnings} to look at`].filter(Boolean).join(', '),
@@ -121,7 +125,8 @@ export const en = {
     failed: 'The task is not done.',
     broken: 'It cannot be run.',
   },
-  after: (seconds: string) => `after ${seconds} s of the world`,
+  after: (seconds: string) => `Time: ${seconds} s.`,
+  score: (points: number) => `Points: ${points}.`,
   manyRuns: 'Many runs',
   howMany: 'Runs, with the seeds from 1 on',
   runAll: 'Run all',

@@ -6,6 +6,8 @@
 export interface Kept {
   name: string;
   bytes: Uint8Array;
+  /** Somebody has it as a file, too. */
+  isSaved: boolean;
 }
 
 /** What is kept of a tab. */
@@ -61,8 +63,8 @@ async function within<T>(
   }
 }
 
-export async function keep({ name, bytes }: Kept): Promise<void> {
-  const place: Place = { name, bytes, page: location.pathname, at: Date.now() };
+export async function keep({ name, bytes, isSaved }: Kept): Promise<void> {
+  const place: Place = { name, bytes, isSaved, page: location.pathname, at: Date.now() };
   await within('readwrite', (store) => store.put(place, tab)).catch(() => undefined);
 }
 

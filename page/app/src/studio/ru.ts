@@ -12,6 +12,7 @@ export const ru: Words = {
   blank: 'Новый',
   open: 'Открыть',
   save: 'Сохранить',
+  rename: 'Переименовать',
   link: 'Скопировать ссылку',
   linkCopied: 'Ссылка в буфере обмена: в ней весь проект.',
   linkLong: (most) => `Проект слишком велик для ссылки: больше ${most} КиБ. Сохраните его в файл.`,
@@ -22,6 +23,7 @@ export const ru: Words = {
   notOpened: (name, why) => `${name} не открыт: ${why}`,
   tooLarge: (mb) => `файл больше ${mb} МиБ, а это предел`,
   loseChanges: 'Отказаться от несохранённого',
+  unsavedAsk: 'Есть несохранённые изменения.',
   cancel: 'Отмена',
   kept: (name) => `${name} — в том виде, в каком эта страница была оставлена.`,
   undo: 'Отменить',
@@ -63,6 +65,7 @@ export const ru: Words = {
   paste: 'Вставить',
   connectTo: 'Соединить с',
   connect: 'Соединить',
+  linkPoint: 'Начало связи',
   guard: 'Условие',
   theLink: 'Связь',
   theDiagram: 'Диаграмма',
@@ -80,9 +83,10 @@ export const ru: Words = {
   goTo: 'Открыть подпрограмму',
 
   findings: 'Ошибки',
+  none: 'нет',
   noFindings: 'Ошибок нет.',
   counted: (errors, warnings) =>
-    [errors > 0 && `исправить: ${errors}`, warnings > 0 && `посмотреть: ${warnings}`]
+    [errors > 0 && `исправить ${errors}`, warnings > 0 && `посмотреть ${warnings}`]
       .filter(Boolean)
       .join(', '),
   level: { error: 'ошибка', warning: 'странно', note: 'замечание' },
@@ -114,7 +118,7 @@ export const ru: Words = {
   fastest: 'наибольшая',
   time: (seconds) => `${seconds} с`,
   worldPicture: 'Мир сверху',
-  fit: 'Весь',
+  fit: 'Показать всё',
   zoomIn: 'Ближе',
   zoomOut: 'Дальше',
   notRun: (why) => `Запустить нельзя: ${why}`,
@@ -124,9 +128,10 @@ export const ru: Words = {
     failed: 'Задание не выполнено.',
     broken: 'Запустить нельзя.',
   },
-  after: (seconds) => `через ${seconds} с времени мира`,
+  after: (seconds) => `Время: ${seconds} с.`,
+  score: (points) => `Баллов: ${points}.`,
   manyRuns: 'Много запусков',
-  howMany: 'Запусков, со случайностью от 1',
+  howMany: 'Сколько запусков (случайность с 1)',
   runAll: 'Запустить все',
   verdict: 'Оценка',
   duration: 'Время',

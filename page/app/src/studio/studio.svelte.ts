@@ -53,14 +53,22 @@ export class Studio {
   #piece: Promise<Piece> | undefined;
   /** The same as text, for the clipboard. */
   #copied = '';
+  #task: { name: string; bytes: Uint8Array } | undefined;
 
   constructor() {
     const worker = new Worker(new URL('./engine/drafts.worker.ts', import.meta.url), { type: 'module' });
     this.#drafts = new Remote<DraftCalls>(worker);
   }
 
-  get name(): string {
-    return this.drawing?.state.name ?? '';
+  /** The name of its file. */
+  name = $state('');
+
+  rename(name: string): void {
+    const text = name.trim();
+    if (text === '' || text === this.name) return;
+    this.name = text.endsWith('.qrs') ? text : `${text}.qrs`;
+    this.isSaved = false;
+    this.#keepSoon();
   }
 
   get diagram(): string {
@@ -112,7 +120,7 @@ export class Studio {
       await this.open(left.name, left.bytes);
       this.notice = words.kept(left.name);
       this.refusal = why;
-      this.isSaved = false;
+      this.isSaved = left.isSaved;
     }
     if (!this.drawing) await this.blank();
     this.isReady = true;
@@ -141,16 +149,24 @@ export class Studio {
     try {
       const answer = await fetch(named.content);
       if (!answer.ok) throw new Error(`${answer.status}`);
-      await this.open(named.dataset['name'] ?? named.content, new Uint8Array(await answer.arrayBuffer()));
+      const bytes = new Uint8Array(await answer.arrayBuffer());
+      const name = named.dataset['name'] ?? named.content;
+      await this.open(name, bytes);
       await this.#drafts.call('setTask');
+      this.#task = { name, bytes };
       this.hasTask = true;
     } catch (error) {
       this.refusal = words.noTask(String(error));
     }
   }
 
+  /** A new project, or the task from its beginning. */
   async blank(): Promise<void> {
     const why = this.refusal;
+    if (this.#task) {
+      await this.open(this.#task.name, this.#task.bytes);
+      return;
+    }
     this.#show(await this.#drafts.call('blank', words.untitled));
     if (!this.isReady) this.refusal = why;
   }
@@ -173,6 +189,12 @@ export class Studio {
     this.chosen = new Set();
     this.drawing = await this.#drafts.call('see', diagram);
     this.#lookSoon();
+  }
+
+  /** Looks at the diagram of this name, if there is one. */
+  async seeNamed(diagram: string): Promise<void> {
+    const wanted = this.drawing?.state.diagrams.find(({ name }) => name === diagram);
+    if (wanted && wanted.id !== this.diagram) await this.see(wanted.id);
   }
 
   /** Changes the draft: ids of what is new. */
@@ -316,9 +338,8 @@ export class Studio {
   }
 
   /** Where something is wrong: its diagram, with the block chosen. */
-  async goTo({ diagram, object }: Finding): Promise<void> {
-    const wanted = this.drawing?.state.diagrams.find(({ name }) => name === diagram);
-    if (wanted && wanted.id !== this.diagram) await this.see(wanted.id);
+  async goTo({ diagram, object }: Pick<Finding, 'diagram' | 'object'>): Promise<void> {
+    await this.seeNamed(diagram ?? '');
     if (object) this.chosen = new Set([object]);
   }
 
@@ -330,6 +351,7 @@ export class Studio {
     this.refusal = this.notice = '';
     this.chosen = this.breakpoints = new Set();
     this.drawing = drawing;
+    this.name = drawing.state.name;
     this.isSaved = true;
     this.opened += 1;
     void this.#lookNow();
@@ -370,8 +392,14 @@ export class Studio {
   }
 
   async #keepNow(): Promise<void> {
-    if (this.isSaved) return;
     const bytes = await this.bytes();
-    if (bytes) await keep({ name: this.name, bytes });
+    if (bytes) await keep({ name: this.name, bytes, isSaved: this.isSaved });
+  }
+
+  /** Somebody has it as a file; it is there all the same when the page is opened again. */
+  async saved(notice: string): Promise<void> {
+    this.isSaved = true;
+    this.notice = notice;
+    await this.#keepNow();
   }
 }

@@ -59,6 +59,22 @@ function begin(answer: ReturnType<typeof web.blank>): Drawing | string {
   return now('');
 }
 
+/** Findings with the names of blocks as they stand on the sheet. */
+function named(findings: Finding[]): Finding[] {
+  const { diagrams } = must().about();
+  const titles = new Map<string, string>();
+  if (findings.length > 0) {
+    for (const { id } of diagrams)
+      for (const { id: block, title, details } of must().sheet(id, locale)?.blocks ?? [])
+        titles.set(block, details ? `${title}: ${details}` : title);
+  }
+  return findings.map((finding) => ({
+    ...finding,
+    block: titles.get(finding.object ?? '') ?? finding.block,
+    diagram: diagrams.length > 1 ? finding.diagram : null,
+  }));
+}
+
 const calls = {
   speak(language: Locale) {
     locale = language;
@@ -99,16 +115,16 @@ const calls = {
   setTask: () => (task = must().world()),
   /** What is wrong with it, and the program as text from the diagram of this name on. */
   look(wanted: Language | 'sentences', diagram: string): Looks {
-    const findings = must().lint(locale);
+    const findings = named(must().lint(locale));
     const names = must().names();
     const project = must().project({ locale });
-    if (!project.ok) return { findings, names, text: said(project.error.problems), isWritten: false };
+    if (!project.ok) return { findings, names, text: said(named(project.error.problems)), isWritten: false };
     const shown =
       wanted === 'sentences'
         ? project.value.show({ locale, diagram })
         : project.value.generate(wanted, { locale });
     project.value.free();
-    if (!shown.ok) return { findings, names, text: said(shown.error.problems), isWritten: false };
+    if (!shown.ok) return { findings, names, text: said(named(shown.error.problems)), isWritten: false };
     const text = typeof shown.value === 'string' ? shown.value : shown.value.text;
     return { findings, names, text, isWritten: true };
   },

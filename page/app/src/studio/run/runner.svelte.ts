@@ -52,6 +52,12 @@ export class Runner {
     return { scene, state, trail, isGround: false, look: () => undefined };
   }
 
+  /** Names of the diagrams in which threads are. */
+  get diagrams(): ReadonlySet<string> {
+    const threads = this.isRunning ? (this.state?.threads ?? []) : [];
+    return new Set(threads.map(({ diagram }) => diagram));
+  }
+
   /** Blocks in which threads are. */
   get lit(): ReadonlySet<string> {
     const threads = this.isRunning ? (this.state?.threads ?? []) : [];
