@@ -302,6 +302,21 @@ test('mistakes are shown while they are made, and lead to their block', async ()
   await page.context().close();
 });
 
+test('a file that is chosen before the studio has come is open once it has', async () => {
+  const page = await look.open('about:blank');
+  await page.route(/[.]wasm$/, async (route) => {
+    await new Promise((later) => setTimeout(later, 1500));
+    await route.continue();
+  });
+  await page.goto(site.url);
+  await page
+    .getByLabel('Open')
+    .setInputFiles(join(import.meta.dirname, '../../../examples/diagrams/line.qrs'));
+  await page.getByRole('heading', { name: 'line.qrs' }).waitFor();
+  await node(page, 'Timer').waitFor();
+  await page.context().close();
+});
+
 test('what is being typed is in the file that Ctrl+S saves', async () => {
   const page = await look.open(site.url);
   await node(page, 'Initial Node').waitFor();

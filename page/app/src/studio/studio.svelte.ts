@@ -39,6 +39,9 @@ export class Studio {
   /** What was done. */
   notice = $state('');
   isReady = $state(false);
+  /** Once there is a project to give up. */
+  readonly ready: Promise<void>;
+  #begun: () => void = () => undefined;
   /** How many projects were opened here. */
   opened = $state(0);
   /** There is a task: its world stays. */
@@ -58,6 +61,7 @@ export class Studio {
   constructor() {
     const worker = new Worker(new URL('./engine/drafts.worker.ts', import.meta.url), { type: 'module' });
     this.#drafts = new Remote<DraftCalls>(worker);
+    this.ready = new Promise((done) => (this.#begun = done));
   }
 
   /** The name of its file. */
@@ -124,6 +128,7 @@ export class Studio {
     }
     if (!this.drawing) await this.blank();
     this.isReady = true;
+    this.#begun();
   }
 
   /** Opens the project of an address, which then is in the page and no longer in its address. Whether there was one. */
