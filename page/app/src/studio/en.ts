@@ -6,6 +6,8 @@ export const en = {
   loading: 'The studio is being loaded.',
   broken: (why: string) => `The studio does not work in this browser: ${why}`,
   noTask: (why: string) => `The task of this page is not there: ${why}`,
+  crashed: (why: string) =>
+    `Something in the studio has failed: ${why}. Load the page again; what you drew until half a second before is kept.`,
   file: 'File',
   blank: 'New',
   open: 'Open',

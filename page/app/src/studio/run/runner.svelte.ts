@@ -43,6 +43,8 @@ export class Runner {
   #last = 0;
   #owed = 0;
   #isAsked = false;
+  /** Of the run: another one follows. */
+  #number = 0;
 
   constructor(private readonly studio: Studio) {}
 
@@ -146,7 +148,7 @@ export class Runner {
     cancelAnimationFrame(this.#frame);
     this.isRunning = false;
     this.refusal = this.lag = '';
-    this.trail.clear();
+    this.#number += 1;
     const bytes = await this.studio.bytes();
     if (!bytes) return undefined;
     this.#remote ??= new Remote<RunCalls>(
@@ -161,6 +163,7 @@ export class Runner {
         [...this.studio.breakpoints],
         language,
       );
+      this.trail.clear();
       if (typeof begun !== 'string') return begun;
       this.refusal = words.notRun(begun);
     } catch (error) {
@@ -187,8 +190,11 @@ export class Runner {
   async #tick(ticks: number): Promise<void> {
     if (!this.#remote || !this.isRunning) return;
     this.#isAsked = true;
+    const number = this.#number;
     try {
-      this.#take(await this.#remote.call('tick', ticks));
+      const seen = await this.#remote.call('tick', ticks);
+      // Of a run that another one has followed nothing is shown.
+      if (number === this.#number) this.#take(seen);
     } catch (error) {
       this.#fail(error);
     }
