@@ -383,6 +383,7 @@ impl Teller {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             has_world: settings.world.is_some(),
             orders_world: (settings.world.as_ref()).is_some_and(|world| world.takes_orders()),
+            has_studio: settings.studio.is_some(),
             configures: settings.configures,
             may_drive: settings.guests.may_drive(self.who.address.ip()),
         }

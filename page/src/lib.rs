@@ -15,6 +15,7 @@
 //!   `tree`: files of the tree as both open them
 //! - `store`, `diagrams`, `flows`: programs of the robot; diagrams and data-flow programs as pictures, and what stands in their
 //!   blocks
+//! - `studio`: the files of the studio, in which diagrams are drawn
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
 //! - `error`, `words`, `limits`
 
@@ -49,6 +50,7 @@ mod server;
 mod serving;
 mod shared;
 mod store;
+pub mod studio;
 mod tree;
 mod word;
 mod words;

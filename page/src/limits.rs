@@ -78,7 +78,11 @@ pub const NAME_BYTES_MAX: usize = 400;
 /// Depth of folders of programs that are listed.
 pub const FOLDERS_MAX: usize = 4;
 /// Bytes of a program that is shown.
-pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
+pub const PROGRAM_BYTES_MAX: usize = 16 << 20;
+/// Bytes of the page of a studio.
+pub const STUDIO_PAGE_BYTES_MAX: u64 = 1 << 20;
+/// Bytes of a file of the studio that are in memory at once.
+pub const STUDIO_PIECE_BYTES: usize = 64 << 10;
 /// Bytes of a program that is edited: a connection that reads nothing holds so many.
 pub const EDITED_BYTES_MAX: usize = 128 << 10;
 /// Bytes of a property of a block.

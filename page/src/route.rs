@@ -9,13 +9,13 @@ use crate::error::Error;
 use crate::files::File;
 use crate::gate::{enter, text};
 use crate::shared::Shared;
-use crate::{configuration, files, inside, plain, store};
+use crate::{configuration, files, inside, plain, store, studio as drawing};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, State, WebSocketUpgrade};
 use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE};
 use axum::http::{StatusCode, Uri};
 use axum::middleware::from_fn_with_state;
-use axum::response::{IntoResponse, Response};
+use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::get;
 use lang_text::problem::Locale;
 use std::collections::HashMap;
@@ -24,12 +24,13 @@ use tokio::sync::Semaphore;
 use tokio::task::JoinError;
 
 /// Paths that give the cookie.
-pub const PAGES: &[&str] = &["/", "/plain"];
+pub const PAGES: &[&str] = &["/", "/plain", "/studio/"];
 /// First parts of paths that are of this robot, and not of every page.
 pub const DATA: &[&str] = &[
     "socket",
     "programs",
     "program",
+    "save",
     "diagram",
     "changed",
     "configuration",
@@ -42,10 +43,14 @@ pub fn router(shared: Arc<Shared>) -> Router {
         .route("/socket", get(socket))
         .route("/programs", get(programs))
         .route("/program/{*name}", get(program))
+        .route("/save/{*name}", get(save))
         .route("/diagram/{*name}", get(diagram))
         .route("/changed/{*name}", get(changed))
         .route("/configuration", get(configured))
         .route("/converters", get(converters))
+        .route("/studio", get(async || Redirect::permanent("/studio/")))
+        .route("/studio/", get(studio))
+        .route("/studio/{*path}", get(studio))
         .route("/plain", get(table))
         .fallback(file)
         .layer(from_fn_with_state(shared.gate.clone(), enter))
@@ -162,6 +167,32 @@ async fn program(
         (CACHE_CONTROL, "no-store"),
     ];
     with_files(&shared, locale, work, |text| (kind, text).into_response()).await
+}
+
+/// A program as it is, byte for byte.
+async fn save(
+    State(shared): State<Arc<Shared>>,
+    Path(name): Path<String>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
+    let locale = locale(&query);
+    let seen = shared.clone();
+    let work = move || store::read(folder(&seen, &name)?, &name);
+    let kind = [
+        (CONTENT_TYPE, "application/octet-stream"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    with_files(&shared, locale, work, |bytes| (kind, bytes).into_response()).await
+}
+
+/// A file of the studio.
+async fn studio(State(shared): State<Arc<Shared>>, path: Option<Path<String>>) -> Response {
+    let Some(folder) = shared.settings.studio.clone() else {
+        return text(StatusCode::NOT_FOUND, "the studio is not installed here");
+    };
+    let path = path.map_or_else(String::new, |Path(path)| path);
+    let work = move || Ok(drawing::given(&folder, &path));
+    with_files(&shared, Locale::English, work, |answer| answer).await
 }
 
 async fn configured(

@@ -23,6 +23,8 @@ pub struct Settings {
     pub tree: PathBuf,
     /// The folder of programs, if it is on this machine.
     pub programs: Option<PathBuf>,
+    /// The folder of a built studio, in which diagrams are drawn, if there is one.
+    pub studio: Option<PathBuf>,
     /// What is around the robot, if that is virtual.
     pub world: Option<Arc<dyn World>>,
     /// What is played below the tree, if that is a recording.

@@ -48,13 +48,18 @@ pub fn list(folder: &Path) -> Value {
 /// The bytes of a program.
 ///
 /// # Errors
-/// There is no such program, or it is none.
+/// There is no such program, it is none, or it is too large to be shown.
 pub fn read(folder: &Path, name: &str) -> Result<Vec<u8>, Error> {
     let file = open_program(folder, name)?;
+    let failed = |error| Error::File(name.to_owned(), error);
+    let most = limits::PROGRAM_BYTES_MAX;
+    let size = file.metadata().map_err(failed)?.len();
     let mut bytes = Vec::new();
-    file.take(limits::PROGRAM_BYTES_MAX)
-        .read_to_end(&mut bytes)
-        .map_err(|error| Error::File(name.to_owned(), error))?;
+    let limit = most as u64 + 1;
+    file.take(limit).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() > most {
+        return Err(Error::Large(name.to_owned(), size.max(limit), most));
+    }
     Ok(bytes)
 }
 

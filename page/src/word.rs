@@ -101,6 +101,8 @@ pub enum News {
         has_world: bool,
         /// It takes orders.
         orders_world: bool,
+        /// The studio is served beside it.
+        has_studio: bool,
         /// This computer may do things.
         may_drive: bool,
         /// The configuration may be replaced from here.
@@ -157,22 +159,13 @@ impl News {
             why.as_ref()
                 .map_or(Value::Null, |why| why.in_locale(locale).into())
         };
-        let object = |is: &str, members: Vec<(&str, Value)>| {
-            let mut all = Map::new();
-            all.insert("is".to_owned(), is.into());
-            all.extend(
-                members
-                    .into_iter()
-                    .map(|(name, value)| (name.to_owned(), value)),
-            );
-            Value::Object(all).to_string()
-        };
         match self {
             Self::Hello {
                 name,
                 version,
                 has_world,
                 orders_world,
+                has_studio,
                 may_drive,
                 configures,
             } => object(
@@ -182,6 +175,7 @@ impl News {
                     ("version", version.as_str().into()),
                     ("world", (*has_world).into()),
                     ("orders", (*orders_world).into()),
+                    ("studio", (*has_studio).into()),
                     ("drives", (*may_drive).into()),
                     ("configures", (*configures).into()),
                 ],
@@ -224,6 +218,15 @@ impl News {
             Self::World(state) => format!("{{\"is\":\"world\",\"state\":{state}}}"),
         }
     }
+}
+
+/// News of a kind, with these members.
+fn object(is: &str, members: Vec<(&str, Value)>) -> String {
+    let mut all = Map::new();
+    all.insert("is".to_owned(), is.into());
+    let members = members.into_iter();
+    all.extend(members.map(|(name, value)| (name.to_owned(), value)));
+    Value::Object(all).to_string()
 }
 
 /// Whether a request of the control port only looks, so that every browser may send it; the port has many more that change
@@ -356,6 +359,7 @@ mod tests {
                 version: "1".to_owned(),
                 has_world: true,
                 orders_world: false,
+                has_studio: true,
                 may_drive: false,
                 configures: false,
             },

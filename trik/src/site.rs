@@ -1,6 +1,6 @@
 //! `trik site`: the studio as files for a web server, empty or with a task that pupils solve in it.
 //!
-//! Owns where the built studio is found, which of its files are copied, and what a task adds. The studio itself is
+//! Owns which files of the built studio are copied, and what a task adds. The studio itself is
 //! `page/app/src/studio`, which `web/site.sh` builds.
 
 mod words;
@@ -15,6 +15,7 @@ use crate::terminal::named;
 use clap::Args;
 use lang_text::escape::escaped;
 use lang_text::problem::{Locale, Words};
+use page::studio::{PAGE, WORKER, find, is_one, with_tag};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Component, Path, PathBuf};
@@ -40,10 +41,6 @@ pub(crate) struct SiteArgs {
     pub language: Locale,
 }
 
-/// The file that names all others, which the browser keeps.
-const WORKER: &str = "sw.js";
-/// The page.
-const PAGE: &str = "index.html";
 /// The task, on every site that has one.
 const TASK: &str = "task.qrs";
 /// Licences of what is in the page: not kept by browsers, and always there.
@@ -52,8 +49,6 @@ const LICENCES: &str = "licences.txt";
 const LIST: &str = "const FILES = ";
 /// How the name of what the browser keeps ends.
 const CACHE_END: &str = "';\n";
-/// After which line of the page the task is named.
-const HEAD: &str = "<meta charset=\"utf-8\" />";
 
 /// Makes a site.
 ///
@@ -86,7 +81,6 @@ pub(crate) fn run(args: &SiteArgs) -> Result<u8, Refusal> {
 
 /// The folder of the built studio.
 fn studio(args: &SiteArgs) -> Result<PathBuf, Refusal> {
-    let is_one = |folder: &PathBuf| folder.join(WORKER).is_file() && folder.join(PAGE).is_file();
     let refusal = |words: Words| Refusal::new(words.in_locale(args.language));
     if let Some(folder) = &args.studio {
         return match is_one(folder) {
@@ -94,12 +88,7 @@ fn studio(args: &SiteArgs) -> Result<PathBuf, Refusal> {
             false => Err(refusal(words::no_studio_in(&named(folder)))),
         };
     }
-    let program = std::env::current_exe().and_then(fs::canonicalize);
-    let program = program.unwrap_or_default();
-    let above = program.parent().and_then(Path::parent);
-    let places = above.map(|above| [above.join("share/trik/studio"), above.join("web/site")]);
-    let found = places.into_iter().flatten().find(is_one);
-    found.ok_or_else(|| refusal(words::no_studio()))
+    find().ok_or_else(|| refusal(words::no_studio()))
 }
 
 /// The files that the worker of a studio lists, but the folder itself; nothing if it lists none or leads elsewhere.
@@ -136,10 +125,10 @@ fn add_task(
         let changed = match file.as_str() {
             PAGE => {
                 let tag = format!(
-                    "{HEAD}\n    <meta name=\"trik-task\" content=\"{TASK}\" data-name=\"{}\" />",
+                    "<meta name=\"trik-task\" content=\"{TASK}\" data-name=\"{}\" />",
                     escaped(&name)
                 );
-                text.replacen(HEAD, &tag, 1)
+                with_tag(&text, &tag)
             }
             WORKER => text
                 .replacen(

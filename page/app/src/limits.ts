@@ -103,6 +103,8 @@ export const EDIT_FILE_MB_MAX = 32;
 export const LINK_KIB_MAX = 48;
 /** After the last change, before mistakes are looked for. */
 export const LOOK_AFTER_MS = 30;
+/** After the last change, before a robot that runs the drawing gets it. */
+export const DRAWN_AFTER_MS = 200;
 /** After the last change, before the browser keeps the project. */
 export const KEEP_AFTER_MS = 500;
 /** What is pasted stands beside its original. */

@@ -76,6 +76,7 @@ fn scene_with(look: bool, drive: bool, configures: bool) -> Scene {
         name: "test".to_owned(),
         tree: home.path().join("tree"),
         programs: Some(home.path().join("programs")),
+        studio: Some(home.path().join("studio")),
         world: None,
         playback: None,
         configures,
@@ -380,6 +381,86 @@ fn a_page_that_may_not_configure_says_what_allows_it() {
     browser.until("\"configures\":false");
     browser.order(r#"{"do":"configure","text":"x"}"#);
     browser.until("trikd --page-configures allows it");
+}
+
+#[test]
+fn the_studio_is_given_file_by_file_with_the_robot_in_its_page() {
+    let scene = scene(true, true);
+    let home = scene.home.path();
+    let gone = scene.get("/studio/", &scene.host(), "");
+    assert!(gone.starts_with("HTTP/1.1 404 "), "{gone}");
+    fs::create_dir_all(home.join("studio/assets")).unwrap();
+    let head = "<head>\n    <meta charset=\"utf-8\" />\n</head>";
+    fs::write(home.join("studio/index.html"), head).unwrap();
+    fs::write(home.join("studio/sw.js"), "1").unwrap();
+    let large = "x".repeat(3 * limits::STUDIO_PIECE_BYTES + 7);
+    fs::write(home.join("studio/assets/a.js"), &large).unwrap();
+    fs::write(home.join("studio/assets/m.wasm.gz"), "packed").unwrap();
+    fs::write(home.join("secret.txt"), "secret").unwrap();
+
+    let page = scene.get("/studio/", &scene.host(), "");
+    assert!(page.starts_with("HTTP/1.1 200 ") && page.contains("set-cookie: trik"));
+    assert!(
+        page.contains("<meta name=\"trik-robot\" content=\"/\" />\n</head>"),
+        "{page}"
+    );
+    assert!(page.contains("'wasm-unsafe-eval'") && page.contains("frame-ancestors 'none'"));
+    let module = scene.get("/studio/assets/m.wasm", &scene.host(), "");
+    for part in [
+        "content-encoding: gzip",
+        "application/wasm",
+        "content-length: 6",
+        "\r\n\r\npacked",
+        "'wasm-unsafe-eval'",
+    ] {
+        assert!(module.contains(part), "{part}: {module}");
+    }
+    let script = scene.get("/studio/assets/a.js", &scene.host(), "");
+    assert!(
+        script.contains("immutable")
+            && script.ends_with(&large)
+            && !script.contains("content-encoding")
+    );
+    for path in [
+        "..%2fsecret.txt",
+        "%2e%2e/secret.txt",
+        "assets",
+        "assets%2f..%2f..%2fsecret.txt",
+        "%00",
+        "none.js",
+        "/etc/passwd",
+    ] {
+        let answer = scene.get(&format!("/studio/{path}"), &scene.host(), "");
+        assert!(
+            answer.starts_with("HTTP/1.1 40") && !answer.contains("secret"),
+            "{path}: {answer}"
+        );
+    }
+    let elsewhere = scene.get("/studio/", "evil.example", "");
+    assert!(elsewhere.starts_with("HTTP/1.1 403 "), "{elsewhere}");
+}
+
+#[test]
+fn a_save_is_given_byte_for_byte_to_the_page_alone() {
+    let scene = scene(true, false);
+    let bytes: Vec<u8> = (0..=255).collect();
+    fs::write(scene.home.path().join("programs/a.qrs"), &bytes).unwrap();
+    let stranger = scene.get("/save/a.qrs", &scene.host(), "");
+    assert!(stranger.starts_with("HTTP/1.1 403 "), "{stranger}");
+    let mut stream = scene.connect();
+    let request = format!(
+        "GET /save/a.qrs HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}\r\n",
+        scene.host(),
+        scene.cookie()
+    );
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    assert!(answer.ends_with(&bytes));
+    let large = fs::File::create(scene.home.path().join("programs/b.qrs")).unwrap();
+    large.set_len(limits::PROGRAM_BYTES_MAX as u64 + 1).unwrap();
+    let refused = scene.get("/save/b.qrs", &scene.host(), &scene.cookie());
+    assert!(refused.starts_with("HTTP/1.1 422 "), "{refused}");
 }
 
 #[test]

@@ -54,6 +54,7 @@ impl Served {
             name: name.clone(),
             tree: place.mountpoint.clone(),
             programs: Some(trikd.scripts.clone()),
+            studio: page::studio::find(),
             world: beneath.world.clone(),
             playback: beneath.playback.clone(),
             // That of a recording is made from its nodes.

@@ -60,6 +60,7 @@ pub fn start(
             name: settings.name.clone().unwrap_or_else(host_name),
             tree: settings.tree.clone(),
             programs: Some(settings.scripts.clone()),
+            studio: page::studio::find(),
             world: None,
             playback: None,
             configures: settings.page_configures,

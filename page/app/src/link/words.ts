@@ -26,6 +26,8 @@ export type News =
       world: boolean;
       /** The world takes orders: it is none that was recorded. */
       orders: boolean;
+      /** The studio is served beside it. */
+      studio: boolean;
       drives: boolean;
       configures: boolean;
     }

@@ -65,6 +65,8 @@ export class Robot {
   version = $state('');
   hasWorld = $state(false);
   #ordersWorld = $state(false);
+  /** The studio is there, at `/studio/`. */
+  hasStudio = $state(false);
   mayDrive = $state(true);
   isInControl = $state(false);
   /** The address of the browser that is in control; empty if none is. */
@@ -241,6 +243,7 @@ export class Robot {
         this.version = news.version;
         this.hasWorld = news.world;
         this.#ordersWorld = news.orders;
+        this.hasStudio = news.studio;
         this.mayDrive = news.drives;
         this.configuration.mayReplace = news.configures;
         break;

@@ -1,0 +1,253 @@
+// The robot that has given this page: the project is sent to it, run there, changed while it runs, and stopped.
+//
+// Owns which version the robot has of what is drawn here. Programs and the debugger speak with it as those of its own page do.
+
+import { DRAWN_AFTER_MS } from '../../limits';
+import type { Taker } from '../../link/link';
+import { Link } from '../../link/link';
+import type { News } from '../../link/words';
+import { Debugger } from '../../robot/debugger.svelte';
+import { Programs } from '../../robot/program.svelte';
+import { heard, language } from '../../words';
+import type { Studio } from '../studio.svelte';
+import { words } from './words';
+
+/** How often it is asked where its program is, while somebody looks. */
+const LOOK_MS = 100;
+const NOWHERE: ReadonlySet<string> = new Set();
+
+export class Robot implements Taker {
+  name = $state('');
+  isConnected = $state(false);
+  /** Why it takes no programs; empty if it does. */
+  absence = $state('');
+  mayDrive = $state(true);
+  isInControl = $state(false);
+  holder = $state('');
+  /** What was not done, and why. */
+  refusal = $state('');
+  /** What is drawn goes to the robot while it runs there. */
+  isLive = $state(true);
+  /** The name under which it has what is drawn here; empty if it has not. */
+  sent = $state('');
+  /** The bytes that it has were made of these looks at the drawing. */
+  #newest = $state.raw<unknown>(undefined);
+  readonly #link: Link;
+  readonly programs: Programs;
+  readonly debugger: Debugger;
+  #patching = false;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #opened = -1;
+
+  constructor(
+    private readonly studio: Studio,
+    address: string,
+  ) {
+    this.#link = new Link(address, this);
+    this.programs = new Programs(this.#link);
+    this.debugger = new Debugger(this.#link);
+  }
+
+  /** The robot that has given the page, if one has. */
+  static ofPage(studio: Studio): Robot | undefined {
+    if (!document.querySelector('meta[name=trik-robot]')) return undefined;
+    return new Robot(studio, `ws://${location.host}/socket?language=${language}`);
+  }
+
+  get isOthers(): boolean {
+    return !this.isInControl && this.holder !== '';
+  }
+
+  /** It does what it is told from here. */
+  get mayAct(): boolean {
+    return this.isConnected && !this.absence && this.mayDrive && !this.isOthers;
+  }
+
+  /** What runs there is what is drawn here, perhaps in an older version. */
+  get isOurs(): boolean {
+    return this.sent !== '' && this.programs.running === this.sent && this.#opened === this.studio.opened;
+  }
+
+  get isNewest(): boolean {
+    return this.#newest === this.studio.looks;
+  }
+
+  get hasMistakes(): boolean {
+    return this.studio.looks.findings.some(({ level }) => level === 'error');
+  }
+
+  /** The debugger holds it. */
+  get isHeld(): boolean {
+    const state = this.debugger.told?.state;
+    return this.isOurs && (state === 'stopped' || state === 'past');
+  }
+
+  #threads = $derived.by(() => {
+    const told = this.isOurs ? (this.debugger.told?.threads ?? []) : [];
+    return told.flatMap(({ at, calls }) => [at, ...(calls ?? [])]).filter((at) => at !== undefined);
+  });
+
+  /** Blocks in which its program is. */
+  readonly lit: ReadonlySet<string> = $derived(
+    this.#threads.length > 0 ? new Set(this.#threads.map(({ id }) => id)) : NOWHERE,
+  );
+
+  /** Diagrams in which its program is. */
+  readonly diagrams: ReadonlySet<string> = $derived(
+    this.#threads.length > 0 ? new Set(this.#threads.map(({ diagram }) => diagram)) : NOWHERE,
+  );
+
+  /** Sends what is drawn, and runs it. */
+  async run(): Promise<void> {
+    this.refusal = '';
+    const name = this.studio.name;
+    const { looks } = this.studio;
+    if (!(await this.#upload(name))) return;
+    this.sent = name;
+    this.#newest = looks;
+    this.#opened = this.studio.opened;
+    const breakpoints = [...this.studio.breakpoints];
+    this.debugger.plans.set(name, breakpoints);
+    if (breakpoints.length === 0) this.programs.run(name);
+    else await this.debugger.run(name, false);
+    if (this.debugger.why) this.refusal = heard(this.debugger.why);
+  }
+
+  /** Everything to rest, and its program to its end. Works without control. */
+  stop(): void {
+    this.#link.order({ do: 'stop' });
+  }
+
+  take(): void {
+    this.#link.order({ do: 'take' });
+  }
+
+  async order(order: 'pause' | 'step' | 'continue'): Promise<void> {
+    if (!this.debugger.told?.attached) await this.debugger.order('attach');
+    await this.debugger.order(order);
+    this.refusal = heard(this.debugger.why);
+  }
+
+  /** Breakpoints are at these blocks: also in the program that runs. */
+  async stopAt(wanted: ReadonlySet<string>): Promise<void> {
+    if (!this.isOurs || !this.mayAct) return;
+    const there = new Set(this.debugger.planned(this.sent));
+    const others = [
+      ...[...wanted].filter((id) => !there.has(id)),
+      ...[...there].filter((id) => !wanted.has(id)),
+    ];
+    for (const id of others) await this.debugger.toggle(this.sent, id, true);
+  }
+
+  /** What is drawn has changed: the program that runs becomes that, unless it has mistakes. */
+  drawn(): void {
+    if (!this.isLive || !this.isOurs || this.isNewest || this.hasMistakes || !this.mayAct) return;
+    clearTimeout(this.#timer);
+    // While a number is being turned there is a new version at each step of it.
+    this.#timer = setTimeout(() => void this.#patch(), DRAWN_AFTER_MS);
+  }
+
+  async #patch(): Promise<void> {
+    if (this.#patching) {
+      this.drawn();
+      return;
+    }
+    this.#patching = true;
+    const { looks } = this.studio;
+    try {
+      if (await this.#upload(this.sent)) {
+        this.programs.patch(this.sent);
+        this.#newest = looks;
+      }
+    } finally {
+      this.#patching = false;
+    }
+    this.drawn();
+  }
+
+  async #upload(name: string): Promise<boolean> {
+    const bytes = await this.studio.bytes();
+    if (!bytes) return false;
+    if (await this.programs.upload(new File([bytes.slice()], name))) return true;
+    if (this.programs.refusal) this.refusal = words.notSent[this.programs.refusal];
+    return false;
+  }
+
+  /** A program of the robot as a file; a text says why there is none. */
+  async file(name: string): Promise<File | string> {
+    const path = name.split('/').map(encodeURIComponent).join('/');
+    try {
+      const answer = await fetch(`/save/${path}?language=${language}`);
+      if (!answer.ok) return (await answer.text()).trim();
+      return new File([await answer.blob()], name);
+    } catch (error) {
+      return String(error);
+    }
+  }
+
+  /** What was opened is what the robot has under this name. */
+  isThere(name: string): void {
+    this.sent = name;
+    this.#opened = this.studio.opened;
+  }
+
+  /** Asks where the program is, again and again while it runs and somebody looks. Returns what ends that. */
+  watch(): () => void {
+    let isOver = false;
+    const again = async (): Promise<void> => {
+      if (!document.hidden) await this.debugger.look();
+      if (!isOver) setTimeout(() => void again(), LOOK_MS);
+    };
+    void again();
+    return () => (isOver = true);
+  }
+
+  // What the link says.
+
+  connected(is: boolean): void {
+    this.isConnected = is;
+    if (!is) this.absence = '';
+  }
+
+  news(news: News): void {
+    switch (news.is) {
+      case 'hello':
+        this.name = news.name;
+        this.mayDrive = news.drives;
+        break;
+      case 'control':
+        this.isInControl = news.mine;
+        this.holder = news.who ?? '';
+        break;
+      case 'robot':
+        this.absence = news.there ? '' : (news.why ?? '?');
+        if (!news.there) break;
+        this.programs.begin();
+        this.debugger.begin();
+        break;
+      case 'programs':
+        void this.programs.changed(news.name, news.to);
+        break;
+      case 'refused':
+        this.refusal = heard(news.why);
+        break;
+      case 'written':
+      case 'stages':
+      case 'configured':
+      case 'scene':
+      case 'world':
+      case 'playback':
+      case 'beat':
+        // Nothing of it is shown here.
+        break;
+      default:
+        news satisfies never;
+    }
+  }
+
+  message(bytes: Uint8Array): void {
+    const message = new TextDecoder().decode(bytes);
+    this.programs.message(message);
+    this.debugger.message(message);
+  }
+}
