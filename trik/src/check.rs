@@ -7,7 +7,6 @@
 mod args;
 mod class;
 mod confine;
-mod explain;
 mod grade_args;
 mod grades;
 mod jobs;

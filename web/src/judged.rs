@@ -14,6 +14,7 @@ use sim::judge::debugged::Debugged;
 use sim::judge::{self, Clock, Dataflow, Diagram, Outcome, Program, Settings, Task, Texts};
 use std::rc::Rc;
 use std::time::Duration;
+use studio::explain::explanation;
 use studio::program::Program as Opened;
 use studio::verdict::Verdict;
 
@@ -30,7 +31,7 @@ pub struct Wish {
 
 impl Wish {
     /// Reads the options of a run: `locale`, `field`, `seed`, `modelSeconds`, `wallSeconds`, `keepGoing`, `markerTraces`,
-    /// `trajectory`, `inputs`, `gamepad`, `debug`. `locale` is set as soon as it is known.
+    /// `explain`, `trajectory`, `inputs`, `gamepad`, `debug`. `locale` is set as soon as it is known.
     ///
     /// # Errors
     /// [`Failure::Request`].
@@ -43,6 +44,7 @@ impl Wish {
         let wall = options.number("wallSeconds", 0.0, limits::WALL_SECONDS_MAX)?;
         let keep_going = options.flag("keepGoing")?;
         let is_marking = options.flag("markerTraces")?;
+        let is_explaining = options.flag("explain")?;
         let is_recording = options.flag("trajectory")?;
         let answers = options.texts("inputs")?;
         let gamepad = options.text("gamepad")?;
@@ -63,6 +65,7 @@ impl Wish {
             answers,
             deeds,
             is_marking,
+            is_explaining,
             is_recording,
             ..usual
         };
@@ -228,6 +231,7 @@ pub fn told(
     let is_told = |entry: &&Entry| entry.level != Level::Variables;
     let entries = outcome.entries.iter().filter(is_told);
     let more = entries.clone().count().saturating_sub(limits::MESSAGES_MAX);
+    let explanation = settings.is_explaining.then(|| explanation(outcome, locale));
     let trajectory = settings.is_recording.then(|| outcome.trajectory.write());
     json!({
         "verdict": verdict.name(),
@@ -239,6 +243,7 @@ pub fn told(
         "printed": outcome.printed,
         "strange": project.findings().json(&project.name, strange, locale),
         "report": judge::report::write(&outcome.entries),
+        "explanation": explanation,
         "trajectory": trajectory,
     })
 }
@@ -276,6 +281,7 @@ fn unrun(project: &Project, refused: &Refused, locale: Locale) -> Value {
         "printed": [],
         "strange": failure["problems"],
         "report": judge::report::of_messages(&said),
+        "explanation": null,
         "trajectory": null,
     })
 }

@@ -226,6 +226,8 @@ export interface RunOptions {
   keepGoing?: boolean;
   /** Let markers leave traces that sensors and rules see. */
   markerTraces?: boolean;
+  /** Tell why it ended as it did, as `trik check --explain`. */
+  explain?: boolean;
   /** Give the trajectory. */
   trajectory?: boolean;
   /** What a person answers when the program asks, in order. */
@@ -251,7 +253,47 @@ export interface Judged {
   strange: Finding[];
   /** The files that `trik check --report` and `--trajectory` write. */
   report: string;
+  explanation: Explanation | null;
   trajectory: string | null;
+}
+
+/** Why a run ended as it did. */
+export interface Explanation {
+  /** Lines for people; those that belong to the one before are indented. */
+  text: string[];
+  ms: number;
+  /** The rule that has decided. */
+  decided_by: RuleName | null;
+  rules: (RuleName & {
+    decided: boolean;
+    fired_ms: number | null;
+    state: 'alive' | 'dropped' | 'never_set_up';
+    set_up_by: RuleName[];
+    conditions: {
+      text: string;
+      depth: number;
+      negated: boolean;
+      /** null: it was not looked at. */
+      holds: boolean | null;
+      values: string[];
+      nearest: { gap: number; unit: 'value' | 'px' | 'ms'; ms: number } | null;
+    }[];
+    more_conditions: number;
+  })[];
+  more_rules: number;
+  threads: {
+    thread: string;
+    ended_ms: number | null;
+    diagram: string;
+    block: { id: string; kind: string; caption: string };
+  }[];
+}
+
+/** A rule; `number` is its place among its kind, from 1. */
+export interface RuleName {
+  kind: 'event' | 'constraint' | 'timelimit' | 'init';
+  id: string;
+  number: number;
 }
 
 /** Something that rules or the program said. */

@@ -65,6 +65,21 @@ fn a_project_is_judged_and_says_what_it_is() {
         (&outcome["verdict"], &outcome["trajectory"]),
         (&"failed".into(), &Value::Null)
     );
+    assert_eq!(outcome["explanation"], Value::Null);
+    // Why is told to those who ask, in their language, and after a run that is looked at too.
+    let asks = r#"{"explain": true, "locale": "ru"}"#;
+    let whole = judged(&opened(save("10")), asks)["explanation"].clone();
+    let mut run = Run::begin(&opened(save("10")), asks).0.unwrap();
+    while run.tick(1000) == "runs" {}
+    let seen = run.outcome().unwrap();
+    assert_eq!(seen["explanation"], whole);
+    let first = whole["text"][0].as_str().unwrap();
+    assert!(
+        first.contains("0.04") && !first.starts_with("why") && whole["ms"] == outcome["ms"],
+        "{whole}"
+    );
+    let nearest = &whole["rules"][0]["conditions"][0]["nearest"];
+    assert!(nearest["gap"].as_f64().unwrap() > 1.0, "{whole}");
     let text = project.show("").0.unwrap();
     assert!(text.as_str().unwrap().contains("1500"), "{text}");
     let code = project.generate("python", "").0.unwrap();

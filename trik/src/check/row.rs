@@ -2,11 +2,12 @@
 //!
 //! Owns both forms. The line is also what a worker process tells.
 
-use super::{explain, points, words};
+use super::{points, words};
 use crate::limits;
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use sim::judge::json::{self, Value};
+use studio::explain;
 use studio::verdict::Verdict;
 
 /// One run.

@@ -4,7 +4,6 @@
 //! in `sim`.
 
 use super::args::CheckArgs;
-use super::explain;
 use super::jobs::{Job, shown};
 use super::recorded;
 use super::row::Row;
@@ -30,6 +29,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
+use studio::explain;
 use studio::verdict::Verdict;
 
 /// Ends of the names of files, where each run has its own.

@@ -4,15 +4,8 @@ use super::walk::Reason;
 use lang_text::near::did_you_mean;
 use lang_text::problem::{Locale, Words};
 use std::io;
+pub(super) use studio::explain::words::{choose, seconds};
 use studio::verdict::{Counts, Verdict};
-
-/// A text in a language.
-pub(super) fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
-    match locale {
-        Locale::English => english,
-        Locale::Russian => russian,
-    }
-}
 
 /// How Russian words begin that mean points.
 pub(super) const POINTS_RUSSIAN: [&str; 2] = ["балл", "очк"];
@@ -77,13 +70,6 @@ pub(super) fn heading(locale: Locale) -> [&'static str; 6] {
         Locale::Russian => ["решение", "поле", "вердикт", "время", "баллы", "почему"],
     }
 }
-
-/// Model time.
-pub(super) fn seconds(ms: u32, locale: Locale) -> String {
-    let unit = choose(locale, "s", "с");
-    format!("{}.{:02} {unit}", ms / 1000, ms % 1000 / 10)
-}
-
 /// Messages that are left out.
 pub(super) fn more(count: usize, locale: Locale) -> String {
     match locale {

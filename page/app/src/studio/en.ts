@@ -12,6 +12,7 @@ export const en = {
   blank: 'New',
   open: 'Open',
   save: 'Save',
+  why: 'Why',
   rename: 'Rename',
   link: 'Copy a link',
   linkCopied: 'The link is on the clipboard: it carries the whole project.',

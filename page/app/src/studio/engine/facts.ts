@@ -8,6 +8,7 @@ export type {
   DrawnDiagram,
   DrawnLink,
   DrawnSheet,
+  Explanation,
   Failure,
   Finding,
   Judged,

@@ -74,7 +74,7 @@ const calls = {
     const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
     project = opened.value;
-    const begun = project.run({ locale, seed, debug: true });
+    const begun = project.run({ locale, seed, debug: true, explain: true });
     if (!begun.ok) return said(begun.error.problems);
     run = begun.value;
     run.order('attach');

@@ -1,10 +1,23 @@
-//! What `trik check --explain` says, in English and Russian.
+//! What explanations of runs say, in English and Russian.
 
-use crate::check::words::{choose, seconds};
+use crate::verdict::Verdict;
 use lang_constraint::Kind;
 use lang_text::problem::{Locale, Words};
 use sim::judge::{Running, Spot};
-use studio::verdict::Verdict;
+
+/// One of both.
+pub fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
+    match locale {
+        Locale::English => english,
+        Locale::Russian => russian,
+    }
+}
+
+/// A time in seconds, with two digits.
+pub fn seconds(ms: u32, locale: Locale) -> String {
+    let unit = choose(locale, "s", "с");
+    format!("{}.{:02} {unit}", ms / 1000, ms % 1000 / 10)
+}
 
 /// Short names of units.
 pub(super) struct Units {

@@ -1,18 +1,18 @@
-//! Why a run ended as it did, as `--explain` tells it: lines for people, and a value for JSON.
+//! Why a run ended as it did, as `trik check --explain` and the studio tell it: lines for people, and a value for JSON.
 //!
 //! Owns both forms. What is known is kept by `lang-constraint`, for rules, and by `sim`, for the blocks of programs.
 
-mod words;
+pub mod words;
 
+use crate::verdict::Verdict;
 use lang_constraint::{Explained, Kind, Near, Seen, Standing, Unit};
 use lang_diagram::stand_in::PIXELS_IN_CM;
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 use sim::judge::{Outcome, Running, Spot};
-use studio::verdict::Verdict;
 
 /// What is told of a run: an object, whose `text` has the lines for people.
-pub(super) fn explanation(outcome: &Outcome, locale: Locale) -> Value {
+pub fn explanation(outcome: &Outcome, locale: Locale) -> Value {
     let verdict = Verdict::of(outcome);
     let rules = outcome.explanation.as_ref();
     let told: &[Explained] = rules.map_or(&[], |rules| &rules.rules);
@@ -214,7 +214,7 @@ fn thread_json(one: &Running, locale: Locale) -> Value {
 }
 
 /// The lines of such a value.
-pub(super) fn lines(explanation: &Value) -> impl Iterator<Item = &str> {
+pub fn lines(explanation: &Value) -> impl Iterator<Item = &str> {
     let text = explanation.get("text").and_then(Value::as_array);
     text.into_iter().flatten().filter_map(Value::as_str)
 }
