@@ -45,6 +45,8 @@ if [ -d "$data" ]; then
 fi
 node web/test/hostile.mjs "$package" "${hostile[@]}"
 
+node web/test/dcml.mjs "$package" "$trik"
+
 if command -v chromium >/dev/null; then
     node web/test/browser.mjs "$package" "$made/ours/projects/d2_motor_stuck_wheels.qrs" accomplished
 elif [ "${TRIK_REQUIRE_TOOLS:-}" = 1 ]; then

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
-pub(crate) const LARGEST: [(&str, usize); 25] = [
+pub(crate) const LARGEST: [(&str, usize); 26] = [
     ("bridge", 1),
     ("config", 4),
     ("converter", 3),
@@ -34,6 +34,7 @@ pub(crate) const LARGEST: [(&str, usize); 25] = [
     ("trikd", 9),
     ("trikfs", 12),
     ("web", 1),
+    ("web/dcml", 1),
 ];
 
 /// The way to a module from the root of its crate.

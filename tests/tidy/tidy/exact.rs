@@ -6,7 +6,7 @@
 use super::{Source, none, sources};
 
 /// What the package for browsers is made of.
-const EXACT: [&str; 11] = [
+const EXACT: [&str; 12] = [
     "lang/constraint",
     "lang/dataflow",
     "lang/dcml",
@@ -18,6 +18,7 @@ const EXACT: [&str; 11] = [
     "sim",
     "studio",
     "web",
+    "web/dcml",
 ];
 /// Functions of `f64` and `f32`.
 const INEXACT: [&str; 25] = [

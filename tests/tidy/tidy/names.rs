@@ -5,7 +5,7 @@
 use super::{none, sources};
 
 /// Crates that are held to it.
-const NAMED: [&str; 25] = [
+const NAMED: [&str; 26] = [
     "bridge",
     "config",
     "converter",
@@ -31,6 +31,7 @@ const NAMED: [&str; 25] = [
     "trikd",
     "trikfs",
     "web",
+    "web/dcml",
 ];
 /// Names that any type could have.
 const EMPTY: [&str; 8] = [

@@ -1,4 +1,4 @@
-//! Makes a package for browsers and Node of a compiled module: `bindgen MODULE.wasm OUT`.
+//! Makes a package for browsers and Node of a compiled module: `bindgen MODULE.wasm OUT NAME`.
 //!
 //! Owns the form of the package: modules of JavaScript with declarations for TypeScript, for every engine that has
 //! `fetch` or is given the bytes.
@@ -8,14 +8,14 @@ use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
-    let (Some(module), Some(out), None) = (arguments.next(), arguments.next(), arguments.next())
-    else {
-        bail!("usage: bindgen MODULE.wasm OUT");
+    let mut next = || arguments.next();
+    let (Some(module), Some(out), Some(name), None) = (next(), next(), next(), next()) else {
+        bail!("usage: bindgen MODULE.wasm OUT NAME");
     };
     let mut bindgen = Bindgen::new();
     bindgen
         .input_path(&module)
-        .out_name("studio")
+        .out_name(&name)
         .typescript(true)
         .omit_default_module_path(false);
     bindgen
