@@ -5,6 +5,7 @@
 use crate::failure::Failure;
 use crate::options::Options;
 use crate::project::Answer;
+use lang_diagram::blocks::choices::called;
 use lang_diagram::blocks::{Category, Content, Kits, Property, Row, Silent, Type, table};
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
@@ -38,7 +39,7 @@ fn row(row: &Row, locale: Locale) -> Value {
         "kits": kits,
         // It stands in old saves, and nobody draws it again.
         "isOld": row.silent == Silent::Always,
-        "text": row.text,
+        "text": row.text_in(locale),
         "icon": row.icon,
         "properties": row.properties.iter().map(|one| property(one, locale)).collect::<Vec<_>>(),
     })
@@ -65,5 +66,6 @@ fn property(property: &Property, locale: Locale) -> Value {
         "default": property.default,
         "takes": takes,
         "choices": choices,
+        "choiceTitles": choices.map(|all| all.iter().map(|one| called(one, locale)).collect::<Vec<_>>()),
     })
 }

@@ -89,7 +89,7 @@ export interface PaletteBlock {
   kits: string[];
   /** It is of old saves, and does nothing. */
   isOld: boolean;
-  /** What it does, in English. */
+  /** What it does. */
   text: string;
   /** Its picture: pieces of SVG around the origin, in a square of 50. */
   icon: string;
@@ -104,6 +104,8 @@ export interface PropertyFacts {
   default: string;
   takes: 'statements' | 'expression' | 'text' | 'variable' | 'ports' | 'number' | 'choice';
   choices: string[] | null;
+  /** What people read for each of them. */
+  choiceTitles: string[] | null;
 }
 
 export interface BlankOptions {

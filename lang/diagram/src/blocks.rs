@@ -8,6 +8,7 @@
 
 pub mod act;
 mod actions;
+pub mod choices;
 mod core;
 mod drawing;
 pub mod example;
@@ -47,8 +48,8 @@ pub struct Row {
     pub silent: Silent,
     /// Its properties, in the order of the editor.
     pub properties: &'static [Property],
-    /// What it does, for people.
-    pub text: &'static str,
+    /// What it does, for people: in English and Russian.
+    pub text: [&'static str; 2],
     /// Its picture: SVG within a square of 50 px around the origin.
     pub icon: &'static str,
     /// What it does, for `lower`.
@@ -193,6 +194,15 @@ impl Row {
         match locale {
             Locale::English => self.shown,
             Locale::Russian => self.russian,
+        }
+    }
+
+    /// What it does, in a language.
+    pub fn text_in(&self, locale: Locale) -> &'static str {
+        let [english, russian] = self.text;
+        match locale {
+            Locale::English => english,
+            Locale::Russian => russian,
         }
     }
 

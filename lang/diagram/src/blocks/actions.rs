@@ -17,7 +17,7 @@ pub(super) const fn row(
     shown: [&'static str; 2],
     act: &'static Act,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     block(
         Category::Actions,
@@ -52,7 +52,7 @@ const fn copy(
     shown: [&'static str; 2],
     copied: &'static Copied,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     let does = Does::Copy(copied);
     Row {
@@ -81,7 +81,7 @@ pub(super) const ROWS: &[Row] = &[
                 Raw,
                 "media/beep.wav",
             )],
-            "Plays a sound file that is on the robot.",
+            ["Plays a sound file that is on the robot.", "Проигрывает звуковой файл, который есть на роботе."],
         )
     },
     Row {
@@ -106,7 +106,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Frequency", ["Frequency", "Частота"], Number, "1000"),
                 property("Duration", ["Duration", "Длительность"], Number, "1000"),
             ],
-            "Plays a tone of a number of Hz for a number of milliseconds. Both are plain numbers. The program goes on at once.",
+            ["Plays a tone of a number of Hz for a number of milliseconds. Both are plain numbers. The program goes on at once.", "Издаёт тон заданной частоты в Гц заданное число миллисекунд. Оба - просто числа. Программа сразу продолжает."],
         )
     },
     Row {
@@ -128,7 +128,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Text", ["Text", "Текст"], Evaluated, "Hi!"),
                 EVALUATE,
             ],
-            "Says a text, or the value of an expression if `Evaluate` is set.",
+            ["Says a text, or the value of an expression if `Evaluate` is set.", "Произносит текст или значение выражения, если стоит `Вычислять`."],
         )
     },
     Row {
@@ -165,7 +165,7 @@ pub(super) const ROWS: &[Row] = &[
                 Choice(&["green", "red", "off", "orange"]),
                 "red",
             )],
-            "Sets the light on the board.",
+            ["Sets the light on the board.", "Зажигает светодиод на контроллере."],
         )
     },
     Row {
@@ -195,7 +195,7 @@ pub(super) const ROWS: &[Row] = &[
                 flag("Code", ["Code", "Код"], "false"),
                 EVALUATE,
             ],
-            "Runs a shell command on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.",
+            ["Runs a shell command on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.", "Выполняет команду на роботе или строку программы, если стоит `Код`. В имитаторе не делает ничего."],
         )
     },
     Row {
@@ -223,7 +223,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("File", ["File", "Файл"], Raw, "output.txt"),
                 expression("Text", ["Text", "Текст"], Text, ""),
             ],
-            "Appends the value of an expression to a file, without a newline.",
+            ["Appends the value of an expression to a file, without a newline.", "Дописывает значение выражения в файл, без перевода строки."],
         )
     },
     Row {
@@ -239,7 +239,7 @@ pub(super) const ROWS: &[Row] = &[
                     .dotnet("IO.File.Delete($1)")],
             ),
             &[property("File", ["File", "Файл"], Raw, "output.txt")],
-            "Removes a file.",
+            ["Removes a file.", "Удаляет файл."],
         )
     },
     Row {
@@ -268,7 +268,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Mode", ["Mode", "Режим"], Choice(SENSORS), "line"),
                 flag("DrawStream", ["Draw stream", "Показывать видео"], "true"),
             ],
-            "Starts a sensor of the camera. In the simulator the camera always works.",
+            ["Starts a sensor of the camera. In the simulator the camera always works.", "Включает датчик видеокамеры. В имитаторе камера работает всегда."],
         )
     },
     Row {
@@ -289,7 +289,7 @@ pub(super) const ROWS: &[Row] = &[
             .russian("Выключить камеру")
             .dispensable(),
             &[property("Mode", ["Mode", "Режим"], Choice(SENSORS), "line")],
-            "Stops a sensor of the camera. Only generated programs do that.",
+            ["Stops a sensor of the camera. Only generated programs do that.", "Выключает датчик видеокамеры. Это делают только сгенерированные программы."],
         )
     },
     Row {
@@ -314,7 +314,7 @@ pub(super) const ROWS: &[Row] = &[
                 Choice(&["line", "object"]),
                 "line",
             )],
-            "The sensor of the camera learns the colour that it sees in its middle.",
+            ["The sensor of the camera learns the colour that it sees in its middle.", "Датчик видеокамеры запоминает цвет, который видит посередине."],
         )
     },
     Row {
@@ -332,7 +332,7 @@ pub(super) const ROWS: &[Row] = &[
                 device: None,
             },
             &[variable("Variable", "err")],
-            "Assigns the place of the line, from -100 to 100, to a variable.",
+            ["Assigns the place of the line, from -100 to 100, to a variable.", "Присваивает переменной положение линии от -100 до 100."],
         )
     },
     Row {
@@ -362,7 +362,7 @@ pub(super) const ROWS: &[Row] = &[
                     "30",
                 ),
             ],
-            "Starts the video of the camera. In the simulator it does nothing.",
+            ["Starts the video of the camera. In the simulator it does nothing.", "Включает видеотрансляцию. В имитаторе не делает ничего."],
         )
     },
     Row {
@@ -374,7 +374,7 @@ pub(super) const ROWS: &[Row] = &[
             ["Disable Video Streaming", "Выключить видеотрансляцию"],
             &Act::command(|_| Command::StopVideo, &[script(&[], VIDEO_OFF)]).dispensable(),
             &[],
-            "Stops the video of the camera. In the simulator it does nothing.",
+            ["Stops the video of the camera. In the simulator it does nothing.", "Выключает видеотрансляцию. В имитаторе не делает ничего."],
         )
     },
     Row {
@@ -410,7 +410,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Message", ["Message", "Сообщение"], Raw, ""),
                 expression("HullNumber", ["Hull Number", "Бортовой номер"], Whole, ""),
             ],
-            "Sends a text unchanged to the robot with a hull number; without a number, to all.",
+            ["Sends a text unchanged to the robot with a hull number; without a number, to all.", "Отправляет текст без изменений роботу с бортовым номером; без номера - всем."],
         )
     },
     Row {
@@ -427,7 +427,7 @@ pub(super) const ROWS: &[Row] = &[
             .russian("Калибровать гироскоп")
             .dispensable(),
             &[],
-            "Sets the present heading to 0.",
+            ["Sets the present heading to 0.", "Принимает нынешний курс за 0."],
         )
     },
     Row {
@@ -448,7 +448,7 @@ pub(super) const ROWS: &[Row] = &[
                 }),
             },
             &[variable("variable", "x")],
-            "Assigns all distances of the lidar, in cm, to a variable.",
+            ["Assigns all distances of the lidar, in cm, to a variable.", "Присваивает переменной все расстояния лидара, в см."],
         )
     },
 ];

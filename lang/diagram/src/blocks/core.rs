@@ -99,7 +99,7 @@ const fn row(
     shown: [&'static str; 2],
     does: Does,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     block(Category::Algorithms, kind, shown, does, properties, text)
 }
@@ -113,7 +113,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Initial Node", "Начало"],
             Does::Start,
             &[],
-            "The program or the subprogram begins here. A diagram has one, with one link out of it.",
+            [
+                "The program or the subprogram begins here. A diagram has one, with one link out of it.",
+                "Здесь начинается программа или подпрограмма. В диаграмме одно такое начало, и из него выходит одна связь.",
+            ],
         )
     },
     Row {
@@ -124,7 +127,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Final Node", "Конец"],
             Does::End,
             &[],
-            "The diagram ends here: a subprogram returns, a thread ends. Other threads go on.",
+            [
+                "The diagram ends here: a subprogram returns, a thread ends. Other threads go on.",
+                "Здесь диаграмма заканчивается: подпрограмма возвращается, задача завершается. Другие задачи продолжаются.",
+            ],
         )
     },
     Row {
@@ -143,7 +149,10 @@ pub(super) const ROWS: &[Row] = &[
                 variable("variable", "x"),
                 property("value", ["Value", "Значение"], Raw, "0"),
             ],
-            "Assigns a value to a variable. The text `variable = value` is run as a statement.",
+            [
+                "Assigns a value to a variable. The text `variable = value` is run as a statement.",
+                "Присваивает переменной значение. Текст `переменная = значение` выполняется как оператор.",
+            ],
         )
     },
     Row {
@@ -172,7 +181,10 @@ pub(super) const ROWS: &[Row] = &[
                 Truth,
                 "x > 0",
             )],
-            "Takes one of two branches. Exactly two links go out; their guards are `true` and `false`, and one of them may be left blank.",
+            [
+                "Takes one of two branches. Exactly two links go out; their guards are `true` and `false`, and one of them may be left blank.",
+                "Выбирает одну из двух ветвей. Выходят ровно две связи с условиями `true` и `false`; одно из них можно не писать.",
+            ],
         )
     },
     Row {
@@ -188,7 +200,10 @@ pub(super) const ROWS: &[Row] = &[
             ["End if", "Конец условия"],
             Does::Merge,
             &[],
-            "Branches meet here. It does nothing.",
+            [
+                "Branches meet here. It does nothing.",
+                "Здесь ветви сходятся. Блок ничего не делает.",
+            ],
         )
     },
     Row {
@@ -209,7 +224,10 @@ pub(super) const ROWS: &[Row] = &[
                 Truth,
                 "x > 0",
             )],
-            "Runs its body as long as the condition holds. The link into the body has the guard `iteration`, the other one is blank.",
+            [
+                "Runs its body as long as the condition holds. The link into the body has the guard `iteration`, the other one is blank.",
+                "Выполняет тело, пока верно условие. У связи в тело условие `iteration`, у другой его нет.",
+            ],
         )
     },
     Row {
@@ -230,7 +248,10 @@ pub(super) const ROWS: &[Row] = &[
                 Whole,
                 "10",
             )],
-            "Runs its body a number of times. The link into the body has the guard `iteration`, the other one is blank. The counter belongs to the block, not to the thread: a thread that leaves the body by another link finds it part-way when it comes back.",
+            [
+                "Runs its body a number of times. The link into the body has the guard `iteration`, the other one is blank. The counter belongs to the block, not to the thread: a thread that leaves the body by another link finds it part-way when it comes back.",
+                "Выполняет тело заданное число раз. У связи в тело условие `iteration`, у другой его нет. Счётчик принадлежит блоку, а не задаче: если задача выйдет из тела по другой связи и вернётся, счёт продолжится.",
+            ],
         )
     },
     Row {
@@ -259,7 +280,10 @@ pub(super) const ROWS: &[Row] = &[
                 Text,
                 "x",
             )],
-            "Takes the link whose guard is the value of the expression, otherwise the blank one. Guards are converted to lower case and values are not, so a guard with capitals never matches a text.",
+            [
+                "Takes the link whose guard is the value of the expression, otherwise the blank one. Guards are converted to lower case and values are not, so a guard with capitals never matches a text.",
+                "Идёт по связи, условие которой равно значению выражения, иначе по связи без условия. Условия переводятся в строчные буквы, а значения нет, поэтому условие с прописными буквами не совпадёт ни с каким текстом.",
+            ],
         )
     },
     Row {
@@ -278,7 +302,10 @@ pub(super) const ROWS: &[Row] = &[
                 Statements,
                 "",
             )],
-            "Runs statements: assignments and calls, divided by `;` or lines.",
+            [
+                "Runs statements: assignments and calls, divided by `;` or lines.",
+                "Выполняет операторы: присваивания и вызовы, разделённые `;` или строками.",
+            ],
         )
     },
     Row {
@@ -294,7 +321,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Subprogram", "Подпрограмма"],
             Does::Call,
             &[],
-            "Runs another diagram and then goes on. Arguments are assigned to variables with the names of the parameters; when the subprogram returns, these variables get their previous values back.",
+            [
+                "Runs another diagram and then goes on. Arguments are assigned to variables with the names of the parameters; when the subprogram returns, these variables get their previous values back.",
+                "Выполняет другую диаграмму и продолжает. Аргументы присваиваются переменным с именами параметров; когда подпрограмма возвращается, эти переменные получают прежние значения.",
+            ],
         )
     },
     Row {
@@ -310,7 +340,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Fork", "Параллельные задачи"],
             Does::Fork,
             &[],
-            "Starts a thread for each link; the guard is the name of the thread. One link has the name of the present thread, or is blank, and continues it.",
+            [
+                "Starts a thread for each link; the guard is the name of the thread. One link has the name of the present thread, or is blank, and continues it.",
+                "Запускает задачу для каждой связи; условие связи - имя задачи. У одной связи имя нынешней задачи или никакого, она её продолжает.",
+            ],
         )
     },
     Row {
@@ -326,7 +359,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Join", "Слияние задач"],
             Does::Join,
             &[],
-            "Threads meet here. The guard of the link out of it names the thread that goes on when all have come; the others end.",
+            [
+                "Threads meet here. The guard of the link out of it names the thread that goes on when all have come; the others end.",
+                "Здесь задачи сходятся. Условие выходящей связи называет задачу, которая пойдёт дальше, когда придут все; остальные завершаются.",
+            ],
         )
     },
     Row {
@@ -342,7 +378,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Kill Thread", "Завершить задачу"],
             Does::Kill,
             &[property("Thread", ["Thread", "Задача"], Raw, "main")],
-            "Ends a thread by its name.",
+            [
+                "Ends a thread by its name.",
+                "Завершает задачу с этим именем.",
+            ],
         )
     },
     Row {
@@ -362,7 +401,10 @@ pub(super) const ROWS: &[Row] = &[
                 expression("LowerBound", ["From", "От"], Whole, "0"),
                 expression("UpperBound", ["To", "До"], Whole, "10"),
             ],
-            "Assigns a random integer between two bounds, both included.",
+            [
+                "Assigns a random integer between two bounds, both included.",
+                "Присваивает случайное целое число между двумя границами, включая их.",
+            ],
         )
     },
     Row {
@@ -387,7 +429,10 @@ pub(super) const ROWS: &[Row] = &[
                 ),
                 property("prompt", ["Prompt", "Приглашение"], Raw, ""),
             ],
-            "Asks the user for a value; the answer is an expression. A link with the guard `cancel` is taken if there is no answer.",
+            [
+                "Asks the user for a value; the answer is an expression. A link with the guard `cancel` is taken if there is no answer.",
+                "Спрашивает значение у человека; ответ - выражение. Если ответа нет, программа идёт по связи с условием `cancel`.",
+            ],
         )
     },
     Row {
@@ -408,7 +453,10 @@ pub(super) const ROWS: &[Row] = &[
                 Raw,
                 "Enter some text here...",
             )],
-            "A comment. No link may end at it.",
+            [
+                "A comment. No link may end at it.",
+                "Комментарий. Ни одна связь не может вести к нему.",
+            ],
         )
     },
     Row {
@@ -428,7 +476,10 @@ pub(super) const ROWS: &[Row] = &[
                 property("Thread", ["Thread", "Задача"], Raw, ""),
                 expression("Message", ["Message", "Сообщение"], Text, ""),
             ],
-            "Sends a message to a thread by its name. A message to a thread that does not exist is lost.",
+            [
+                "Sends a message to a thread by its name. A message to a thread that does not exist is lost.",
+                "Отправляет сообщение задаче с этим именем. Сообщение задаче, которой нет, теряется.",
+            ],
         )
     },
     Row {
@@ -456,7 +507,10 @@ pub(super) const ROWS: &[Row] = &[
                 variable("Variable", "x"),
                 flag("Wait", ["Wait", "Ждать"], "true"),
             ],
-            "Assigns the code of a pressed button: Left 105, Right 106, Up 103, Down 108, Enter 28, Power 116, Esc 1. Without `Wait` it assigns -1 if none is pressed. It checks every 20 ms, the first time after 20 ms.",
+            [
+                "Assigns the code of a pressed button: Left 105, Right 106, Up 103, Down 108, Enter 28, Power 116, Esc 1. Without `Wait` it assigns -1 if none is pressed. It checks every 20 ms, the first time after 20 ms.",
+                "Присваивает код нажатой кнопки: влево 105, вправо 106, вверх 103, вниз 108, Enter 28, Power 116, Esc 1. Без `Ждать` присваивает -1, если ничего не нажато. Проверяет каждые 20 мс, первый раз через 20 мс.",
+            ],
         )
     },
     Row {
@@ -473,7 +527,10 @@ pub(super) const ROWS: &[Row] = &[
                 Whole,
                 "1000",
             )],
-            "Waits for a number of milliseconds, rounded up to a multiple of 10, at least 10.",
+            [
+                "Waits for a number of milliseconds, rounded up to a multiple of 10, at least 10.",
+                "Ждёт заданное число миллисекунд, округлённое вверх до кратного 10, не меньше 10.",
+            ],
         )
     },
     Row {
@@ -504,7 +561,10 @@ pub(super) const ROWS: &[Row] = &[
                 variable("Variable", ""),
                 flag("Synchronized", ["Synchronized", "Ждать сообщения"], "true"),
             ],
-            "Takes the next message for the present thread. The message is an expression: a text must have been sent with its quotes. If there is none, it waits, or goes on if it is not synchronized.",
+            [
+                "Takes the next message for the present thread. The message is an expression: a text must have been sent with its quotes. If there is none, it waits, or goes on if it is not synchronized.",
+                "Берёт следующее сообщение для нынешней задачи. Сообщение - выражение: текст должен быть отправлен в кавычках. Если сообщений нет, ждёт или, без синхронизации, продолжает.",
+            ],
         )
     },
     Row {
@@ -525,7 +585,10 @@ pub(super) const ROWS: &[Row] = &[
                 variable("Variable", ""),
                 flag("Synchronized", ["Synchronized", "Ждать сообщения"], "true"),
             ],
-            "Assigns the next message of another robot, as a text. It checks every 100 ms. If it is not synchronized and there is none, it assigns an empty text.",
+            [
+                "Assigns the next message of another robot, as a text. It checks every 100 ms. If it is not synchronized and there is none, it assigns an empty text.",
+                "Присваивает следующее сообщение другого робота, как текст. Проверяет каждые 100 мс. Без синхронизации и без сообщений присваивает пустой текст.",
+            ],
         )
     },
     Row {
@@ -552,7 +615,10 @@ pub(super) const ROWS: &[Row] = &[
                 property("IPPort", ["Port", "Порт"], Number, "8889"),
                 expression("HullNumber", ["Hull Number", "Бортовой номер"], Whole, "1"),
             ],
-            "Takes a hull number and connects to the mailbox of another robot.",
+            [
+                "Takes a hull number and connects to the mailbox of another robot.",
+                "Берёт бортовой номер и подключается к почте другого робота.",
+            ],
         )
     },
 ];

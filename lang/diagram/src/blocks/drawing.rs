@@ -16,7 +16,7 @@ const fn row(
     shown: [&'static str; 2],
     act: &'static Act,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     block(
         Category::Drawing,
@@ -90,7 +90,10 @@ pub(super) const ROWS: &[Row] = &[
                 REDRAW,
                 whole("FontSize", ["Font size", "Размер шрифта"], "20"),
             ],
-            "Prints a text on the screen, or the value of an expression if `Evaluate` is set. Numbers are shown with at most six digits after the point. A text at the same place replaces the previous one.",
+            [
+                "Prints a text on the screen, or the value of an expression if `Evaluate` is set. Numbers are shown with at most six digits after the point. A text at the same place replaces the previous one.",
+                "Печатает на экране текст или значение выражения, если стоит `Вычислять`. У чисел не больше шести цифр после точки. Текст на том же месте заменяет прежний.",
+            ],
         )
     },
     Row {
@@ -108,7 +111,10 @@ pub(super) const ROWS: &[Row] = &[
                 EVALUATE,
                 REDRAW,
             ],
-            "The old Print Text, which does nothing on TRIK. Old saves are converted to TrikPrintText when they are read.",
+            [
+                "The old Print Text, which does nothing on TRIK. Old saves are converted to TrikPrintText when they are read.",
+                "Старый блок печати, который на ТРИК не делает ничего. При чтении старых файлов он заменяется на TrikPrintText.",
+            ],
         )
     },
     Row {
@@ -123,7 +129,10 @@ pub(super) const ROWS: &[Row] = &[
             )
             .dispensable(),
             &[REDRAW],
-            "Removes everything from the screen except the background.",
+            [
+                "Removes everything from the screen except the background.",
+                "Убирает с экрана всё, кроме фона.",
+            ],
         )
     },
     Row {
@@ -145,7 +154,10 @@ pub(super) const ROWS: &[Row] = &[
                 Choice(COLORS),
                 "black",
             )],
-            "Sets the colour of what is drawn from now on.",
+            [
+                "Sets the colour of what is drawn from now on.",
+                "Задаёт цвет всего, что рисуется дальше.",
+            ],
         )
     },
     Row {
@@ -162,7 +174,10 @@ pub(super) const ROWS: &[Row] = &[
             )
             .dispensable(),
             &[whole("Width", ["Width", "Ширина"], "1")],
-            "Sets the width of what is drawn from now on, in pixels.",
+            [
+                "Sets the width of what is drawn from now on, in pixels.",
+                "Задаёт толщину всего, что рисуется дальше, в пикселях.",
+            ],
         )
     },
     Row {
@@ -184,7 +199,7 @@ pub(super) const ROWS: &[Row] = &[
                 whole("YCoordinatePix", ["Y", "Y"], "5"),
                 REDRAW,
             ],
-            "Draws a point.",
+            ["Draws a point.", "Рисует точку."],
         )
     },
     Row {
@@ -208,7 +223,10 @@ pub(super) const ROWS: &[Row] = &[
                 whole("Y2CoordinateLine", ["Y2", "Y2"], "10"),
                 REDRAW,
             ],
-            "Draws a line from one point to another.",
+            [
+                "Draws a line from one point to another.",
+                "Рисует линию от одной точки до другой.",
+            ],
         )
     },
     Row {
@@ -236,7 +254,10 @@ pub(super) const ROWS: &[Row] = &[
                 FILLED,
                 REDRAW,
             ],
-            "Draws a rectangle from its upper left corner.",
+            [
+                "Draws a rectangle from its upper left corner.",
+                "Рисует прямоугольник от левого верхнего угла.",
+            ],
         )
     },
     Row {
@@ -264,7 +285,10 @@ pub(super) const ROWS: &[Row] = &[
                 FILLED,
                 REDRAW,
             ],
-            "Draws an ellipse in a rectangle.",
+            [
+                "Draws an ellipse in a rectangle.",
+                "Рисует эллипс, вписанный в прямоугольник.",
+            ],
         )
     },
     Row {
@@ -290,7 +314,10 @@ pub(super) const ROWS: &[Row] = &[
                 whole("SpanAngle", ["SpanAngle", "Угол дуги"], "20"),
                 REDRAW,
             ],
-            "Draws a part of an ellipse; angles are in degrees.",
+            [
+                "Draws a part of an ellipse; angles are in degrees.",
+                "Рисует часть эллипса; углы в градусах.",
+            ],
         )
     },
     Row {
@@ -307,7 +334,7 @@ pub(super) const ROWS: &[Row] = &[
             .russian("Улыбка")
             .dispensable(),
             &[],
-            "Shows a happy face.",
+            ["Shows a happy face.", "Показывает весёлое лицо."],
         )
     },
     Row {
@@ -324,7 +351,7 @@ pub(super) const ROWS: &[Row] = &[
             .russian("Грустная улыбка")
             .dispensable(),
             &[],
-            "Shows a sad face.",
+            ["Shows a sad face.", "Показывает грустное лицо."],
         )
     },
     Row {
@@ -345,7 +372,10 @@ pub(super) const ROWS: &[Row] = &[
                 property("Color", ["Color", "Цвет"], Choice(COLORS), "white"),
                 REDRAW,
             ],
-            "Sets the colour behind everything on the screen.",
+            [
+                "Sets the colour behind everything on the screen.",
+                "Задаёт цвет позади всего на экране.",
+            ],
         )
     },
     Row {
@@ -362,7 +392,10 @@ pub(super) const ROWS: &[Row] = &[
             )
             .dispensable(),
             &[property("Color", ["Color", "Цвет"], Choice(COLORS), "blue")],
-            "Lets the marker down in the simulator: the robot leaves a trace, which its light and colour sensors see.",
+            [
+                "Lets the marker down in the simulator: the robot leaves a trace, which its light and colour sensors see.",
+                "Опускает маркер в имитаторе: робот оставляет след, который видят его датчики света и цвета.",
+            ],
         )
     },
     Row {
@@ -374,7 +407,7 @@ pub(super) const ROWS: &[Row] = &[
             &Act::command(|_| Command::MarkerUp, &[script(&[], "brick.marker().up()")])
                 .dispensable(),
             &[],
-            "Lifts the marker.",
+            ["Lifts the marker.", "Поднимает маркер."],
         )
     },
 ];

@@ -26,7 +26,10 @@ const fn servo(kind: &'static str, properties: &'static [Property]) -> Row {
             ["Angular Servo", "Угловой сервопривод"],
             const { &Act::of(Effect::Drive(1)) },
             properties,
-            "Turns servos to an angle in degrees.",
+            [
+                "Turns servos to an angle in degrees.",
+                "Поворачивает сервоприводы на угол в градусах.",
+            ],
         )
     }
 }
@@ -41,7 +44,7 @@ const fn clear(kind: &'static str, properties: &'static [Property]) -> Row {
             ["Clear Encoder", "Сбросить энкодер"],
             const { &Act::of(Effect::ResetEncoders) },
             properties,
-            "Sets encoders to 0.",
+            ["Sets encoders to 0.", "Сбрасывает энкодеры в 0."],
         )
     }
 }
@@ -58,7 +61,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Motors Forward", "Моторы вперёд"],
             &Act::of(Effect::Drive(1)),
             &[MOTORS, POWER],
-            "Sets the power of motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
+            [
+                "Sets the power of motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
+                "Задаёт мощность моторов в процентах от -100 до 100; большее считается как 100. Программа сразу продолжает.",
+            ],
         )
     },
     Row {
@@ -72,7 +78,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Motors Backward", "Моторы назад"],
             &Act::of(Effect::Drive(-1)),
             &[MOTORS, POWER],
-            "Sets the power of motors in the other direction.",
+            [
+                "Sets the power of motors in the other direction.",
+                "Задаёт мощность моторов в обратную сторону.",
+            ],
         )
     },
     Row {
@@ -94,7 +103,10 @@ pub(super) const ROWS: &[Row] = &[
                 ),
                 expression("Ports", ["Ports", "Порты"], List, "M1, M2, M3, M4"),
             ],
-            "Switches motors off. On TRIK both modes are the same.",
+            [
+                "Switches motors off. On TRIK both modes are the same.",
+                "Выключает моторы. На ТРИК оба режима одинаковы.",
+            ],
         )
     },
     Row {

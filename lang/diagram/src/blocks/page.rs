@@ -2,6 +2,7 @@
 //!
 //! Owns the layout of that page. Reads and writes no file.
 
+use lang_text::problem::Locale;
 use std::fmt::Write;
 
 use super::{Category, Content, Kits, Property, Row, Silent, Type, table};
@@ -42,7 +43,7 @@ fn block(page: &mut String, row: &Row) {
         Kits::V62 => ", kit V62 only",
     };
     let _ = write!(page, "\n### {}\n\n`{}`{kits}.\n", row.shown, row.kind);
-    for sentence in sentences(row.text) {
+    for sentence in sentences(row.text_in(Locale::English)) {
         let _ = writeln!(page, "{sentence}");
     }
     match row.silent {

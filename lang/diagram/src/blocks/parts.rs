@@ -11,7 +11,7 @@ pub(super) const fn block(
     [shown, russian]: [&'static str; 2],
     does: Does,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     Row {
         kind,

@@ -16,7 +16,7 @@ const fn row(
     shown: [&'static str; 2],
     wait: &'static Wait,
     properties: &'static [Property],
-    text: &'static str,
+    text: [&'static str; 2],
 ) -> Row {
     Row {
         icon: "<path class=\"i\" d=\"M-14 0q14 -15 28 0q-14 15 -28 0z\"/><circle class=\"f\" r=\"4\"/>",
@@ -42,8 +42,10 @@ const ANALOG: Property = property(
 const DISTANCE: Property = expression("Distance", ["Distance", "Расстояние"], Whole, "0");
 const LIMIT: Property = expression("TachoLimit", ["Tacho Limit", "Предел оборотов"], Whole, "");
 const ENCODER_SHOWN: [&str; 2] = ["Wait for Encoder", "Ждать энкодер"];
-const ENCODER_TEXT: &str =
-    "Waits until an encoder has passed a number of degrees. It checks every 10 ms.";
+const ENCODER_TEXT: [&str; 2] = [
+    "Waits until an encoder has passed a number of degrees. It checks every 10 ms.",
+    "Ждёт, пока энкодер не перейдёт через число градусов. Проверяет каждые 10 мс.",
+];
 
 /// Both kits have one, of other ports.
 const ENCODER: Wait = Wait {
@@ -132,7 +134,10 @@ pub(super) const ROWS: &[Row] = &[
                 expression("Degrees", ["Degrees", "Градусы"], Whole, "0"),
                 SIGN,
             ],
-            "Waits until the heading, in whole degrees from -180 to 180, has passed a value.",
+            [
+                "Waits until the heading, in whole degrees from -180 to 180, has passed a value.",
+                "Ждёт, пока курс в целых градусах от -180 до 180 не перейдёт через значение.",
+            ],
         )
     },
     Row {
@@ -154,7 +159,10 @@ pub(super) const ROWS: &[Row] = &[
                 })
             },
             &[ANALOG],
-            "Waits until a touch sensor is pressed.",
+            [
+                "Waits until a touch sensor is pressed.",
+                "Ждёт, пока не нажат датчик касания.",
+            ],
         )
     },
     Row {
@@ -175,7 +183,10 @@ pub(super) const ROWS: &[Row] = &[
                 expression("Percents", ["Percents", "Проценты"], Whole, "0"),
                 SIGN,
             ],
-            "Waits until a light sensor has passed a value in percent. In the simulator white is 0 and black is 99.",
+            [
+                "Waits until a light sensor has passed a value in percent. In the simulator white is 0 and black is 99.",
+                "Ждёт, пока датчик освещённости не перейдёт через значение в процентах. В имитаторе белое - 0, чёрное - 99.",
+            ],
         )
     },
     Row {
@@ -199,7 +210,10 @@ pub(super) const ROWS: &[Row] = &[
                 DISTANCE,
                 SIGN,
             ],
-            "Waits until an ultrasonic sensor has passed a distance in cm.",
+            [
+                "Waits until an ultrasonic sensor has passed a distance in cm.",
+                "Ждёт, пока ультразвуковой датчик не перейдёт через расстояние в см.",
+            ],
         )
     },
     Row {
@@ -216,7 +230,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Wait for Infrared Distance", "Ждать инфракрасный датчик"],
             &sensor("Distance", "TrikInfraredSensor"),
             &[ANALOG, DISTANCE, SIGN],
-            "Waits until an infrared sensor has passed a distance in cm.",
+            [
+                "Waits until an infrared sensor has passed a distance in cm.",
+                "Ждёт, пока инфракрасный датчик не перейдёт через расстояние в см.",
+            ],
         )
     },
     Row {
@@ -289,7 +306,10 @@ pub(super) const ROWS: &[Row] = &[
                 Port(&["Up", "Down", "Left", "Right", "Enter", "Esc"]),
                 "Up",
             )],
-            "Waits until a button of the board is pressed.",
+            [
+                "Waits until a button of the board is pressed.",
+                "Ждёт нажатия кнопки контроллера.",
+            ],
         )
     },
     Row {
@@ -351,7 +371,10 @@ pub(super) const ROWS: &[Row] = &[
                     "xAxis",
                 ),
             ],
-            "Waits until the acceleration along an axis has passed a value. In the simulator it does nothing.",
+            [
+                "Waits until the acceleration along an axis has passed a value. In the simulator it does nothing.",
+                "Ждёт, пока ускорение по оси не перейдёт через значение. В имитаторе не делает ничего.",
+            ],
         )
     },
     Row {
@@ -371,7 +394,10 @@ pub(super) const ROWS: &[Row] = &[
                 words::not_configured("Motion sensor", port)
             }),
             &[],
-            "Waits until the motion sensor on F1 sees something move. In the simulator it does nothing.",
+            [
+                "Waits until the motion sensor on F1 sees something move. In the simulator it does nothing.",
+                "Ждёт, пока датчик движения на F1 не увидит движение. В имитаторе не делает ничего.",
+            ],
         )
     },
     Row {
@@ -392,7 +418,10 @@ pub(super) const ROWS: &[Row] = &[
                 ..gamepad(Asked::Numbered("Button", PAD_BUTTONS))
             },
             &[property("Button", ["Button", "Кнопка"], Number, "1")],
-            "Waits until a button of the gamepad, 1 to 5, is pressed. It checks every 200 ms.",
+            [
+                "Waits until a button of the gamepad, 1 to 5, is pressed. It checks every 200 ms.",
+                "Ждёт нажатия кнопки пульта, от 1 до 5. Проверяет каждые 200 мс.",
+            ],
         )
     },
     Row {
@@ -410,7 +439,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Wait Pad Press", "Ждать нажатия джойстика пульта"],
             &gamepad(Asked::Numbered("Pad", PADS)),
             &[property("Pad", ["Pad", "Джойстик"], Number, "1")],
-            "Waits until a pad of the gamepad is touched: 1 is the left one, 2 the right one.",
+            [
+                "Waits until a pad of the gamepad is touched: 1 is the left one, 2 the right one.",
+                "Ждёт касания джойстика пульта: 1 - левый, 2 - правый.",
+            ],
         )
     },
     Row {
@@ -431,7 +463,10 @@ pub(super) const ROWS: &[Row] = &[
                 ..gamepad(Asked::Fixed("GamepadWheelPort"))
             },
             &[expression("Angle", ["Angle", "Угол"], Whole, "0"), SIGN],
-            "Waits until the wheel of the gamepad, from -100 to 100, has passed a value.",
+            [
+                "Waits until the wheel of the gamepad, from -100 to 100, has passed a value.",
+                "Ждёт, пока руль пульта, от -100 до 100, не перейдёт через значение.",
+            ],
         )
     },
     Row {
@@ -452,7 +487,10 @@ pub(super) const ROWS: &[Row] = &[
                 ..gamepad(CONNECTED)
             },
             &[],
-            "Waits until the gamepad is disconnected.",
+            [
+                "Waits until the gamepad is disconnected.",
+                "Ждёт, пока пульт не отключится.",
+            ],
         )
     },
     Row {
@@ -470,7 +508,10 @@ pub(super) const ROWS: &[Row] = &[
             ["Wait for Gamepad Connect", "Ждать подключения пульта"],
             &gamepad(CONNECTED),
             &[],
-            "Waits until a gamepad is connected.",
+            [
+                "Waits until a gamepad is connected.",
+                "Ждёт подключения пульта.",
+            ],
         )
     },
 ];
