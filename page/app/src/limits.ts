@@ -112,3 +112,9 @@ export const SAID_LINES_MAX = 500;
 /** Runs with other random numbers, one after the other on each core. */
 export const MANY_RUNS_MAX = 500;
 export const MANY_WORKERS_MAX = 8;
+/** Moments of a run that are kept, of which each has the places of all that moves. */
+export const RUN_MOMENTS_MAX = 12_000;
+/** Numbers of a moment: variables, motors and sensors. */
+export const RUN_NUMBERS_MAX = 64;
+/** Letters of a condition, and of what a breakpoint writes: the debugger takes no more. */
+export const CONDITION_LETTERS_MAX = 1000;
