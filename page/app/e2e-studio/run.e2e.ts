@@ -1,5 +1,7 @@
 // A person holds a run, looks back at it, measures it, and makes it many times.
 
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
@@ -12,10 +14,12 @@ const WORLD = join(ROOT, 'examples/dataflow/line.xml');
 
 let look: Look;
 let site: Site;
+let home: string;
 
 beforeAll(async () => {
   look = await Look.start();
   site = await Site.start();
+  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
 });
 afterEach(() => {
   expect(look.complaints).toEqual([]);
@@ -23,6 +27,7 @@ afterEach(() => {
 afterAll(async () => {
   await look?.end();
   await site?.end();
+  rmSync(home, { recursive: true, force: true });
 });
 
 /** The studio with a program that follows a line, in its world. */
@@ -49,6 +54,15 @@ async function fill(page: Page, label: string, text: string): Promise<void> {
 /** Model time that is seen, in seconds. */
 async function time(page: Page): Promise<number> {
   return Number(/([\d.]+) s/.exec((await status(page).textContent()) ?? '')?.[1]);
+}
+
+/** A file that a click gives, as text. */
+async function given(page: Page, name: string): Promise<string> {
+  const download = page.waitForEvent('download');
+  await button(page, name).click();
+  const file = join(home, 'given.csv');
+  await (await download).saveAs(file);
+  return readFileSync(file, 'utf8');
 }
 
 async function shot(page: Page, name: string): Promise<void> {
@@ -128,6 +142,7 @@ test('a run is stepped, looked back at, and goes on from the present as if nothi
 test('a value is changed while the program is held, and a change of it holds the program', async () => {
   const page = await line();
   await button(page, 'Run').click();
+  await expect.poll(() => page.locator('.bar .number').textContent()).not.toBe('0.0 s');
   await button(page, 'Pause').click();
   await page.getByText(/Held, /).waitFor();
   await page.getByRole('button', { name: /^kp is/ }).click();
@@ -144,5 +159,35 @@ test('a value is changed while the program is held, and a change of it holds the
   await button(page, 'Go on').click();
   await page.getByText('It runs').waitFor();
   await button(page, 'End').click();
+  await page.context().close();
+});
+
+test('numbers of a run are drawn over its time and saved as a table', async () => {
+  const page = await line();
+  await page.getByLabel('Speed').selectOption('fastest');
+  await button(page, 'Run').click();
+  await page.getByText('Time: 34.83 s').waitFor();
+  expect(await page.evaluate("performance.getEntries().some(({ name }) => name.includes('RunGraph'))")).toBe(
+    false,
+  );
+  await page.getByText('Values', { exact: true }).click();
+  for (const name of ['u', 'A1']) await button(page, `Graph of ${name}`).click();
+  const graph = page.locator('.graph');
+  await page.getByRole('img', { name: 'Over the time of the run: u, A1' }).waitFor();
+  await expect.poll(() => graph.locator('tbody tr').count()).toBe(2);
+  // Least, mean and greatest are in order.
+  const [, low, mean, high] = (await graph.locator('tbody tr').nth(1).locator('td').allTextContents()).map(
+    (text) => Number(text.replace('\u2212', '-')),
+  );
+  expect(low).toBeLessThan(mean ?? NaN);
+  expect(mean).toBeLessThan(high ?? NaN);
+  await shot(page, 'graph');
+  expect(await barriers(page)).toEqual([]);
+  const lines = (await given(page, 'Save as CSV')).trim().split('\n');
+  expect(lines[0]).toBe('time_s,u,A1');
+  expect(lines.length).toBeGreaterThan(500);
+  expect(Number(lines.at(-1)?.split(',')[0])).toBeCloseTo(34.83);
+  await button(page, 'Without u').click();
+  await page.getByRole('img', { name: 'Over the time of the run: A1' }).waitFor();
   await page.context().close();
 });

@@ -3,7 +3,7 @@
 // Owns the clock of the page, and which moment is seen. The run itself is in a Worker, which is ended and begun anew when it
 // does not answer.
 
-import { SAID_LINES_MAX } from '../../limits';
+import { GRAPH_NUMBERS_MAX, SAID_LINES_MAX } from '../../limits';
 import { language } from '../../words';
 import type { Around } from '../../world/around';
 import { Trail } from '../../world/trail';
@@ -16,6 +16,7 @@ import { words } from '../words';
 import { Moments } from './moments';
 import { orderOf, orders, type Point } from './point';
 import type { Answered, Told } from './told';
+import { words as own } from './words';
 
 /** Model time of one tick. */
 const TICK_MS = 10;
@@ -42,6 +43,8 @@ export class Runner {
   wanted_ms = $state<number | undefined>(undefined);
   /** Variables after a change of which it stops. */
   watches = $state.raw<ReadonlySet<string>>(new Set());
+  /** Names of the numbers of which there are graphs. */
+  graphed = $state.raw<readonly string[]>([]);
   /** The changed program is not in force, and why. */
   lag = $state('');
   /** Breakpoints that are not set, and why. */
@@ -178,6 +181,14 @@ export class Runner {
       this.#fail(error);
       return '';
     }
+  }
+
+  /** There is a graph of this number, or no longer. */
+  toggleGraph(name: string): void {
+    const others = this.graphed.filter((one) => one !== name);
+    if (others.length < this.graphed.length) this.graphed = others;
+    else if (others.length < GRAPH_NUMBERS_MAX) this.graphed = [...others, name];
+    else this.refusal = own.mostNumbers(GRAPH_NUMBERS_MAX);
   }
 
   /** It stops after each change of this variable, or does so no longer. */
