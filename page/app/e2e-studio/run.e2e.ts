@@ -191,3 +191,45 @@ test('numbers of a run are drawn over its time and saved as a table', async () =
   await page.getByRole('img', { name: 'Over the time of the run: A1' }).waitFor();
   await page.context().close();
 });
+
+test('many runs are a heat map, and many fields a table', async () => {
+  const page = await line();
+  await page.getByText('Many runs', { exact: true }).click();
+  await page.getByLabel('Runs, with the seeds').fill('6');
+  await button(page, 'Run all').click();
+  await page.getByText('The task is done in 6.').waitFor();
+  const drawn = (): Promise<string> => page.evaluate("document.querySelector('.picture canvas').toDataURL()");
+  const ways = await drawn();
+  await page.getByLabel('Heat map').check();
+  await page.getByText('from 1 to 6').waitFor();
+  await expect.poll(drawn).not.toBe(ways);
+  await shot(page, 'heat');
+  expect(await barriers(page)).toEqual([]);
+  await page.getByLabel('Ways', { exact: true }).check();
+  await expect.poll(drawn).toBe(ways);
+  // Fields: what is none is said, and the others are run.
+  const text = readFileSync(WORLD, 'utf8');
+  const field = (name: string, content: string) => ({
+    name,
+    mimeType: 'text/xml',
+    buffer: Buffer.from(content),
+  });
+  const files = page.getByLabel('Choose fields');
+  await files.setInputFiles([field('wrong.xml', '<root><world>')]);
+  await page.getByText('wrong.xml is no field').waitFor();
+  await files.setInputFiles([
+    field('one.xml', text),
+    field('=two.xml', readFileSync(join(ROOT, 'examples/dataflow/straight.xml'), 'utf8')),
+  ]);
+  await button(page, 'Without =two.xml').waitFor();
+  await page.getByLabel('Runs, with the seeds').fill('2');
+  await button(page, 'Run all').click();
+  await eventually('all are done', async () => (await page.locator('.list tbody tr').count()) === 4);
+  await shot(page, 'fields');
+  expect(await barriers(page)).toEqual([]);
+  const lines = (await given(page, 'Save as CSV')).trim().split('\n');
+  expect(lines[0]).toBe('field,seed,verdict,time_s,score,why');
+  expect(lines[1]).toMatch(/^one\.xml,1,accomplished,34\.83,/);
+  expect(lines[3]).toMatch(/^"'=two\.xml",1,/);
+  await page.context().close();
+});

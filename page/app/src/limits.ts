@@ -118,3 +118,7 @@ export const RUN_MOMENTS_MAX = 12_000;
 export const RUN_NUMBERS_MAX = 64;
 /** Letters of a condition, and of what a breakpoint writes: the debugger takes no more. */
 export const CONDITION_LETTERS_MAX = 1000;
+/** Cells of a heat map along the longer side of a world. */
+export const HEAT_CELLS_MAX = 400;
+/** Fields in which a program is run many times. */
+export const FIELDS_MAX = 30;

@@ -153,11 +153,31 @@ const calls = {
     opened.value.free();
     return patched && !patched.ok ? said(patched.error.problems) : '';
   },
-  /** A whole run with this seed, as fast as it goes; a text says why there is none. */
-  whole(name: string, bytes: Uint8Array, seed: number, locale: Locale): Whole | string {
+  /** The world of a file, a world or a project: its text, or why there is none; nothing: the project has none. */
+  field(name: string, bytes: Uint8Array, locale: Locale): { text: string } | string | undefined {
+    if (name.endsWith('.qrs')) {
+      const edited = web.edit(name, bytes, { locale });
+      if (!edited.ok) return said(edited.error.problems);
+      const text = edited.value.world();
+      edited.value.free();
+      return text === undefined ? undefined : { text };
+    }
+    const found = web.lint(name, bytes, { locale });
+    const problems = found.ok ? found.value : found.error.problems;
+    const wrong = problems.filter(({ level }) => level === 'error').slice(0, 3);
+    return wrong.length > 0 ? said(wrong) : { text: new TextDecoder().decode(bytes) };
+  },
+  /** A whole run with this seed, as fast as it goes, perhaps in another world; a text says why there is none. */
+  whole(
+    name: string,
+    bytes: Uint8Array,
+    seed: number,
+    locale: Locale,
+    field: string | undefined,
+  ): Whole | string {
     const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
-    const begun = opened.value.run({ locale, seed });
+    const begun = opened.value.run({ locale, seed, ...(field === undefined ? {} : { field }) });
     opened.value.free();
     if (!begun.ok) return said(begun.error.problems);
     const whole = begun.value;

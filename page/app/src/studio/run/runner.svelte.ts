@@ -6,6 +6,7 @@
 import { GRAPH_NUMBERS_MAX, SAID_LINES_MAX } from '../../limits';
 import { language } from '../../words';
 import type { Around } from '../../world/around';
+import type { Heat } from '../../world/heat';
 import { Trail } from '../../world/trail';
 import type { Scene as WorldScene, WorldState } from '../../world/types';
 import type { Judged, Message, Scene, State } from '../engine/facts';
@@ -53,6 +54,8 @@ export class Runner {
   speed = $state(1);
   seed = $state(1);
   readonly trail = new Trail();
+  /** Of many runs; shown until another run begins. */
+  heat = $state.raw<Heat | undefined>(undefined);
   /** What it has come through. */
   readonly moments = new Moments();
   /** Another number after each look, for what shows `moments`. */
@@ -276,6 +279,7 @@ export class Runner {
     try {
       const begun = await this.#worker().call('begin', this.studio.name, bytes, this.seed, language, stops);
       this.trail.clear();
+      this.heat = undefined;
       this.moments.clear();
       if (typeof begun !== 'string') {
         this.unset = begun.unset.join('\n');
