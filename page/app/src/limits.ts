@@ -122,3 +122,6 @@ export const CONDITION_LETTERS_MAX = 1000;
 export const HEAT_CELLS_MAX = 400;
 /** Fields in which a program is run many times. */
 export const FIELDS_MAX = 30;
+/** Projects of a folder that are listed, and entries of it that are looked at. */
+export const FOLDER_FILES_MAX = 200;
+export const FOLDER_ENTRIES_MAX = 5000;
