@@ -3,7 +3,7 @@
 import init, * as web from 'trik-studio-web';
 import type { DebugAnswer, Finding, Judged, Locale, Message, Progress, Scene, State } from './facts';
 import { serve } from './remote';
-import { answerOf, type Answered, reported, type Told, toldOf } from '../run/told';
+import { answerOf, type Answered, reported, type HeldState, heldOf } from '../run/told';
 
 /** What there is to see after some ticks. */
 export interface Seen {
@@ -18,7 +18,7 @@ export interface Seen {
   /** Moments since the last look, the oldest first; the newest is that of `state`. */
   moments: State[];
   /** Where the program is, for its debugger: while it is held, and at the end. */
-  told: Told | undefined;
+  told: HeldState | undefined;
   /** Lines that breakpoints have written. */
   log: string[];
   /** Only at the end. */
@@ -74,7 +74,7 @@ function see(progress: Progress, before: State[] = []): Seen {
     progress,
     state,
     moments: [...before, state],
-    told: looked?.done ? (toldOf(looked['program']) ?? told) : undefined,
+    told: looked?.done ? (heldOf(looked['program']) ?? told) : undefined,
     log,
     messages,
     printed,

@@ -16,7 +16,7 @@ import type { RunCalls, Whole } from '../engine/runs.worker';
 import type { Studio } from '../studio.svelte';
 import { words as all } from '../words';
 import type { Runner } from './runner.svelte';
-import { csv, type Made } from './table';
+import { csv, type DoneRun } from './table';
 import { words } from './words';
 
 /** Another world for the project. */
@@ -35,7 +35,7 @@ interface Job {
 export class Many {
   /** In each field. */
   count = $state(20);
-  done = $state.raw<Made[]>([]);
+  done = $state.raw<DoneRun[]>([]);
   /** Without any the project is run in its own world. */
   fields = $state.raw<readonly Field[]>([]);
   shows = $state<'ways' | 'heat'>('ways');
@@ -168,7 +168,10 @@ export class Many {
     this.heat?.put(way);
   }
 
-  #put(at: Pick<Made, 'number' | 'field' | 'seed'>, came: Omit<Made, 'number' | 'field' | 'seed'>): void {
+  #put(
+    at: Pick<DoneRun, 'number' | 'field' | 'seed'>,
+    came: Omit<DoneRun, 'number' | 'field' | 'seed'>,
+  ): void {
     this.done = [...this.done, { ...at, ...came }].toSorted(
       (one, other) => one.number - other.number || one.seed - other.seed,
     );

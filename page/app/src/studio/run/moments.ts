@@ -92,6 +92,11 @@ export class Moments {
     return { robots, things };
   }
 
+  /** The numbers that were there at a time. */
+  numbersAt(ms: number): Record<string, number> {
+    return this.#all[this.#after(ms) - 1]?.numbers ?? {};
+  }
+
   /** The place of the first moment after a time. */
   #after(ms: number): number {
     let [from, to] = [0, this.#all.length];

@@ -3,7 +3,7 @@ import type { State } from '../engine/facts';
 import { RUN_MOMENTS_MAX } from '../../limits';
 import { Moments } from './moments';
 import { orderOf, orders, PLAIN } from './point';
-import { answerOf, reported, toldOf } from './told';
+import { answerOf, reported, heldOf } from './told';
 
 const state = (ms: number, x: number, variables: Record<string, string> = {}): State => ({
   ms,
@@ -75,6 +75,8 @@ test('numbers of variables, motors and sensors are samples; texts are none', () 
   expect(moments.names).toEqual(['A1', 'M3', 'n', 'isThere']);
   expect(moments.samples('A1')).toEqual({ times: [0, 0.01, 0.02], values: [7, 8, 9] });
   expect(moments.samples('n')).toEqual({ times: [0.01, 0.02], values: [1.5, NaN] });
+  expect(moments.numbersAt(15)).toMatchObject({ A1: 8, n: 1.5 });
+  expect(moments.numbersAt(-1)).toEqual({});
   // Of one moment the newest is kept.
   moments.put(state(20, 11));
   expect(moments.samples('A1').values).toEqual([7, 8, 11]);
@@ -82,10 +84,10 @@ test('numbers of variables, motors and sensors are samples; texts are none', () 
 
 test('what a debugger tells is taken apart, and what is no text is none', () => {
   const stop = { reason: 'change', variable: 'n', was: '1', is: 2 };
-  const told = toldOf({ state: 'stopped', ms: 30, stop, kept: { from_ms: 10 }, variables: [] });
+  const told = heldOf({ state: 'stopped', ms: 30, stop, kept: { from_ms: 10 }, variables: [] });
   expect(told?.from_ms).toBe(10);
   expect(told?.change).toEqual({ variable: 'n', was: '1', is: '' });
-  expect(toldOf(undefined)).toBe(undefined);
+  expect(heldOf(undefined)).toBe(undefined);
   expect(answerOf({ to: 0, done: false, why: 'no' })).toEqual({ why: 'no', value: '' });
   expect(answerOf({ to: 0, done: true, value: '3' })).toEqual({ why: '', value: '3' });
   const news = reported([

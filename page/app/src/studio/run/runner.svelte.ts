@@ -16,7 +16,7 @@ import type { Studio } from '../studio.svelte';
 import { words } from '../words';
 import { Moments } from './moments';
 import { orderOf, orders, type Point } from './point';
-import type { Answered, Told } from './told';
+import type { Answered, HeldState } from './told';
 import { words as own } from './words';
 
 /** Model time of one tick. */
@@ -39,7 +39,7 @@ export class Runner {
   /** The program is held before a block. */
   isHeld = $state(false);
   /** Where the program was when it was held last, or when it ended. */
-  told = $state.raw<Told | undefined>(undefined);
+  told = $state.raw<HeldState | undefined>(undefined);
   /** A time that is to be looked at, in milliseconds, until it is seen. */
   wanted_ms = $state<number | undefined>(undefined);
   /** Variables after a change of which it stops. */
@@ -99,6 +99,18 @@ export class Runner {
   get variables(): [name: string, value: string][] {
     if (this.isPast) return (this.told?.variables ?? []).map(({ name, value }) => [name, value]);
     return Object.entries(this.state?.variables ?? {});
+  }
+
+  /** Motors and sensors at the moment that is seen. */
+  get ports(): [name: string, value: number][] {
+    const { motors = {}, sensors = {} } = this.state ?? {};
+    const now = Object.entries({ ...motors, ...sensors });
+    if (!this.isPast) return now;
+    const then = this.moments.numbersAt(this.seen_ms);
+    return now.flatMap(([name]) => {
+      const value = then[name];
+      return value === undefined ? [] : [[name, value]];
+    });
   }
 
   /** Blocks in which threads are, with their diagrams. */

@@ -7,7 +7,7 @@ import { type DebuggerState, stateOf } from '../../robot/told';
 import { isObject } from '../../robot/plain';
 
 /** Where the program is. */
-export interface Told extends DebuggerState {
+export interface HeldState extends DebuggerState {
   /** The first moment that is kept, in milliseconds. */
   from_ms: number;
   /** After a change that was waited for: the variable, what it was and what it is. */
@@ -25,7 +25,7 @@ export interface Answered {
 /** Letters of a value that was asked for. */
 const VALUE_LETTERS = 4096;
 
-export function toldOf(program: unknown): Told | undefined {
+export function heldOf(program: unknown): HeldState | undefined {
   const state = stateOf(program);
   if (!state || !isObject(program)) return undefined;
   const kept = isObject(program['kept']) ? program['kept']['from_ms'] : 0;
@@ -42,12 +42,12 @@ export function answerOf(answer: DebugAnswer): Answered {
 }
 
 /** Of what a debugger has told by itself the newest state, and all lines. */
-export function reported(reports: readonly DebugReport[]): { log: string[]; told: Told | undefined } {
+export function reported(reports: readonly DebugReport[]): { log: string[]; told: HeldState | undefined } {
   const log: string[] = [];
-  let told: Told | undefined;
+  let told: HeldState | undefined;
   for (const report of reports) {
     if (Array.isArray(report['log'])) log.push(...report['log'].map(text));
-    told = toldOf(report) ?? told;
+    told = heldOf(report) ?? told;
   }
   return { log, told };
 }
