@@ -198,6 +198,12 @@ export class Runner {
     }
   }
 
+  /** Another project has other variables. */
+  forget(): void {
+    this.watches = new Set();
+    this.graphed = [];
+  }
+
   /** There is a graph of this number, or no longer. */
   toggleGraph(name: string): void {
     const others = this.graphed.filter((one) => one !== name);
