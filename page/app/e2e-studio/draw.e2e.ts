@@ -186,14 +186,14 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await page.getByText('The run goes on with the program as it was').waitFor({ state: 'detached' });
   // A breakpoint holds the program and its world before a block, and steps go from block to block.
   await node(page, 'Timer').click();
-  await page.getByRole('button', { name: 'Breakpoint' }).click();
+  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
   await page.getByRole('button', { name: 'Go on' }).waitFor();
   expect(await page.locator('.lit strong').textContent()).toBe('Timer');
   await shot(page, 'run');
   const held = await page.locator('.bar .number').textContent();
-  await page.getByRole('button', { name: 'Step' }).click();
+  await page.getByRole('button', { name: 'Step over' }).click();
   await expect.poll(() => page.locator('.lit strong').textContent()).toBe('Function');
-  await page.getByRole('button', { name: 'Breakpoint' }).click();
+  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
   await page.getByLabel('Speed').selectOption('fastest');
   await page.getByRole('button', { name: 'Go on' }).click();
   await page.getByText('The task is done.').waitFor();

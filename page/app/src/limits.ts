@@ -114,3 +114,16 @@ export const SAID_LINES_MAX = 500;
 /** Runs with other random numbers, one after the other on each core. */
 export const MANY_RUNS_MAX = 500;
 export const MANY_WORKERS_MAX = 8;
+/** Moments of a run that are kept, of which each has the places of all that moves. */
+export const RUN_MOMENTS_MAX = 12_000;
+/** Numbers of a moment: variables, motors and sensors. */
+export const RUN_NUMBERS_MAX = 64;
+/** Letters of a condition, and of what a breakpoint writes: the debugger takes no more. */
+export const CONDITION_LETTERS_MAX = 1000;
+/** Cells of a heat map along the longer side of a world. */
+export const HEAT_CELLS_MAX = 400;
+/** Fields in which a program is run many times. */
+export const FIELDS_MAX = 30;
+/** Projects of a folder that are listed, and entries of it that are looked at. */
+export const FOLDER_FILES_MAX = 200;
+export const FOLDER_ENTRIES_MAX = 5000;

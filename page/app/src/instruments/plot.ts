@@ -70,11 +70,14 @@ export class Plot {
     private readonly traces: readonly Trace[],
     /** The time below the cursor; undefined without one. */
     point: (time: number | undefined) => void,
+    /** Times are those of a day; else seconds from some beginning. */
+    isClock = true,
   ) {
     const ink = () => colour('--dim');
     const grid = { stroke: () => colour('--line'), width: 1 };
     const units = scales(traces);
-    const axes: uPlot.Axis[] = [{ stroke: ink, grid, ticks: grid, values: clock, space: 90, incrs: STEPS_S }];
+    const times = isClock ? { values: clock, space: 90, incrs: STEPS_S } : {};
+    const axes: uPlot.Axis[] = [{ stroke: ink, grid, ticks: grid, ...times }];
     for (const [at, unit] of units.slice(0, 2).entries()) {
       axes.push({
         scale: `y${at}`,

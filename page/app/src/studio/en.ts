@@ -108,8 +108,6 @@ export const en = {
   run: 'Run',
   pause: 'Pause',
   goOn: 'Go on',
-  step: 'Step',
-  stepHint: 'To the next block',
   breakpoint: 'Breakpoint',
   notInForce: (why: string) => `The run goes on with the program as it was: ${why}`,
   end: 'End',

@@ -111,8 +111,6 @@ export const ru: Words = {
   run: 'Запустить',
   pause: 'Пауза',
   goOn: 'Дальше',
-  step: 'Шаг',
-  stepHint: 'К следующему блоку',
   breakpoint: 'Точка останова',
   notInForce: (why) => `Выполняется прежняя программа: ${why}`,
   end: 'Закончить',

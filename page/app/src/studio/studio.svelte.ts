@@ -20,6 +20,7 @@ import { arranged } from './draw/arrange';
 import { guardOfNext } from './draw/guards';
 import { pieceOf } from './draw/piece';
 import { keep, kept } from './keep';
+import { PLAIN, type Point } from './run/point';
 import { fromLink, isLink } from './share';
 import { words } from './words';
 
@@ -32,8 +33,8 @@ export class Studio {
   /** Ids of blocks and links. */
   chosen = $state.raw<ReadonlySet<string>>(new Set());
   language = $state<Language | 'sentences'>('sentences');
-  /** Ids of blocks before which a run stops. */
-  breakpoints = $state.raw<ReadonlySet<string>>(new Set());
+  /** Ids of blocks before which a run stops, and when. */
+  breakpoints = $state.raw<ReadonlyMap<string, Point>>(new Map());
   /** What was not done, and why. */
   refusal = $state('');
   /** What was done. */
@@ -331,9 +332,13 @@ export class Studio {
 
   /** A run stops before this block, or does so no longer. */
   toggleBreakpoint(id: string): void {
-    const all = new Set(this.breakpoints);
-    if (!all.delete(id)) all.add(id);
-    this.breakpoints = all;
+    this.setBreakpoint(id, this.breakpoints.has(id) ? undefined : PLAIN);
+  }
+
+  /** When a run stops before this block; undefined: never. */
+  setBreakpoint(id: string, point: Point | undefined): void {
+    const others = [...this.breakpoints].filter(([one]) => one !== id);
+    this.breakpoints = new Map(point ? [...others, [id, point]] : others);
   }
 
   /** Shows the program in another language. */
@@ -354,7 +359,8 @@ export class Studio {
       return;
     }
     this.refusal = this.notice = '';
-    this.chosen = this.breakpoints = new Set();
+    this.chosen = new Set();
+    this.breakpoints = new Map();
     this.drawing = drawing;
     this.name = drawing.state.name;
     this.isSaved = true;

@@ -5,6 +5,7 @@
 import type { Around } from './around';
 import { Camera } from './camera';
 import { Floor } from './floor';
+import type { Heat } from './heat';
 import { drawMoving } from './moving';
 import { Trail } from './trail';
 import type { Place, Scene, WorldState } from './types';
@@ -18,6 +19,8 @@ export interface Drawable {
   readonly world: WorldState | undefined;
   /** What makes both of something else at each picture. */
   readonly around: Around | undefined;
+  /** Between the floor and all that moves. */
+  readonly heat?: Heat | undefined;
 }
 
 export class View {
@@ -121,7 +124,10 @@ export class View {
     this.#floor.draw(context, scene, camera, ratio);
     context.setTransform(...camera.matrix(ratio));
     const scale = camera.scale * ratio;
-    drawMoving(context, scene, world, this.hasTrail ? this.trail : undefined, scale);
+    this.drawable.heat?.draw(context);
+    // Ways would hide it.
+    const hasTrail = this.hasTrail && !this.drawable.heat;
+    drawMoving(context, scene, world, hasTrail ? this.trail : undefined, scale);
     if (this.showsPicked) this.#ring(context, scene, world, scale);
   }
 

@@ -3,6 +3,8 @@
 export type {
   Answer,
   Change,
+  DebugAnswer,
+  DebugReport,
   DraftState,
   DrawnBlock,
   DrawnDiagram,

@@ -6,6 +6,7 @@ import type {
   BlankOptions,
   Change,
   DebugAnswer,
+  DebugReport,
   DraftState,
   DrawnSheet,
   Finding,
@@ -66,6 +67,7 @@ export interface Run {
   way(from: number): Float64Array;
   news(): News;
   order(order: string): Answer<DebugAnswer>;
+  reports(): DebugReport[];
   patch(project: Project): Answer<string>;
   display(): Uint8Array;
   end(): void;

@@ -1,8 +1,9 @@
 // A run in a Worker: the world and the program tick by tick, as fast as the page asks.
 
 import init, * as web from 'trik-studio-web';
-import type { Finding, Judged, Locale, Message, Progress, Scene, State } from './facts';
+import type { DebugAnswer, Finding, Judged, Locale, Message, Progress, Scene, State } from './facts';
 import { serve } from './remote';
+import { answerOf, type Answered, reported, type HeldState, heldOf } from '../run/told';
 
 /** What there is to see after some ticks. */
 export interface Seen {
@@ -14,8 +15,19 @@ export interface Seen {
   way: Float64Array;
   /** Only if what stands still has changed. */
   scene: Scene | undefined;
+  /** Moments since the last look, the oldest first; the newest is that of `state`. */
+  moments: State[];
+  /** Where the program is, for its debugger: while it is held, and at the end. */
+  told: HeldState | undefined;
+  /** Lines that breakpoints have written. */
+  log: string[];
   /** Only at the end. */
   outcome: Judged | undefined;
+}
+
+/** What an order came to. */
+export interface Ordered extends Answered {
+  seen: Seen;
 }
 
 /** What came out of a run that nobody looked at. */
@@ -27,6 +39,8 @@ export interface Whole extends Pick<Judged, 'verdict' | 'ms' | 'totalScore'> {
 
 /** Between two looks at what stands still, in looks at all else. */
 const SCENE_EVERY = 10;
+/** Moments that one look tells: a long one is told in so many steps. */
+const MOMENTS = 100;
 
 let project: web.Project | undefined;
 let run: web.Run | undefined;
@@ -38,9 +52,10 @@ function said(findings: Finding[]): string {
   return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
 }
 
-function see(progress: Progress): Seen {
+function see(progress: Progress, before: State[] = []): Seen {
   if (!run) throw new Error('nothing runs');
   const { messages, printed } = run.news();
+  const { log, told } = reported(run.reports());
   let changed: Scene | undefined;
   if (looks % SCENE_EVERY === 0 || progress === 'over') {
     const still = run.scene();
@@ -51,10 +66,16 @@ function see(progress: Progress): Seen {
   looks += 1;
   const way = run.way(ticks);
   ticks += way.length / 2;
+  const state = run.state();
+  // Between two pieces of a search nothing is told.
+  const looked = progress === 'runs' ? undefined : asked('look');
   return {
     way,
     progress,
-    state: run.state(),
+    state,
+    moments: [...before, state],
+    told: looked?.done ? (heldOf(looked['program']) ?? told) : undefined,
+    log,
     messages,
     printed,
     scene: changed,
@@ -62,9 +83,32 @@ function see(progress: Progress): Seen {
   };
 }
 
+/** What the debugger answers; undefined: there is none. */
+function asked(order: string): DebugAnswer | undefined {
+  const answer = run?.order(order);
+  return answer?.ok ? answer.value : undefined;
+}
+
+/** Breakpoints and watches, in order: why each of those that are not set is not. */
+function stop(orders: readonly string[]): string[] {
+  asked('clear all');
+  return orders.flatMap((order) => {
+    const answer = asked(order);
+    // A block that was removed is back after another change, with its breakpoint.
+    const isPlain = order.startsWith('break ') && !order.includes('\n');
+    return answer?.done === false && !isPlain ? [answer.why] : [];
+  });
+}
+
 const calls = {
   /** A text says why nothing runs. */
-  begin(name: string, bytes: Uint8Array, seed: number, breakpoints: string[], locale: Locale): Seen | string {
+  begin(
+    name: string,
+    bytes: Uint8Array,
+    seed: number,
+    locale: Locale,
+    stops: string[],
+  ): { seen: Seen; unset: string[] } | string {
     run?.free();
     project?.free();
     run = project = undefined;
@@ -77,21 +121,31 @@ const calls = {
     const begun = project.run({ locale, seed, debug: true, explain: true });
     if (!begun.ok) return said(begun.error.problems);
     run = begun.value;
-    run.order('attach');
-    for (const id of breakpoints) run.order(`break ${id}`);
-    return see(run.progress());
+    asked('attach');
+    const unset = stop(stops);
+    return { seen: see(run.progress()), unset };
   },
-  /** What a debugger is told, as `trik debug` sends it; a text says why it is not done. */
-  order(order: string): Seen | string {
+  /** What a debugger is told, as `trik debug` sends it. */
+  order(order: string): Ordered {
     if (!run) throw new Error('nothing runs');
     const told = run.order(order);
-    if (!told.ok) return said(told.error.problems);
-    return told.value.done ? see(run.progress()) : told.value.why;
+    const answered = told.ok ? answerOf(told.value) : { why: said(told.error.problems), value: '' };
+    return { ...answered, seen: see(run.progress()) };
   },
-  /** Breakpoints are at these blocks, and at no others. */
-  stopAt(breakpoints: string[]): void {
-    run?.order('clear all');
-    for (const id of breakpoints) run?.order(`break ${id}`);
+  /** It stops by these orders, and by no others; why each of those that are not set is not. */
+  stopAt: stop,
+  /** What is wrong with a breakpoint of a program that is not run yet; empty: nothing, or the program is not one. */
+  wrongWith(name: string, bytes: Uint8Array, order: string, locale: Locale): string {
+    const opened = web.open(name, bytes, { locale });
+    if (!opened.ok) return '';
+    const begun = opened.value.run({ locale, debug: true });
+    opened.value.free();
+    if (!begun.ok) return '';
+    begun.value.order('attach');
+    const answer = begun.value.order(order);
+    begun.value.free();
+    if (!answer.ok) return said(answer.error.problems);
+    return answer.value.done ? '' : answer.value.why;
   },
   /** Puts a new version into the run; a text says why it stays as it is. */
   patch(name: string, bytes: Uint8Array, locale: Locale): string {
@@ -101,11 +155,31 @@ const calls = {
     opened.value.free();
     return patched && !patched.ok ? said(patched.error.problems) : '';
   },
-  /** A whole run with this seed, as fast as it goes; a text says why there is none. */
-  whole(name: string, bytes: Uint8Array, seed: number, locale: Locale): Whole | string {
+  /** The world of a file, a world or a project: its text, or why there is none; nothing: the project has none. */
+  field(name: string, bytes: Uint8Array, locale: Locale): { text: string } | string | undefined {
+    if (name.endsWith('.qrs')) {
+      const edited = web.edit(name, bytes, { locale });
+      if (!edited.ok) return said(edited.error.problems);
+      const text = edited.value.world();
+      edited.value.free();
+      return text === undefined ? undefined : { text };
+    }
+    const found = web.lint(name, bytes, { locale });
+    const problems = found.ok ? found.value : found.error.problems;
+    const wrong = problems.filter(({ level }) => level === 'error').slice(0, 3);
+    return wrong.length > 0 ? said(wrong) : { text: new TextDecoder().decode(bytes) };
+  },
+  /** A whole run with this seed, as fast as it goes, perhaps in another world; a text says why there is none. */
+  whole(
+    name: string,
+    bytes: Uint8Array,
+    seed: number,
+    locale: Locale,
+    field: string | undefined,
+  ): Whole | string {
     const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
-    const begun = opened.value.run({ locale, seed });
+    const begun = opened.value.run({ locale, seed, ...(field === undefined ? {} : { field }) });
     opened.value.free();
     if (!begun.ok) return said(begun.error.problems);
     const whole = begun.value;
@@ -120,7 +194,15 @@ const calls = {
   },
   tick(count: number): Seen {
     if (!run) throw new Error('nothing runs');
-    return see(run.tick(count));
+    const step = Math.ceil(count / MOMENTS);
+    const moments: State[] = [];
+    let progress = run.progress();
+    for (let left = count; left > 0; left -= step) {
+      progress = run.tick(Math.min(step, left));
+      if (progress !== 'runs') break;
+      if (left > step) moments.push(run.state());
+    }
+    return see(progress, moments);
   },
   end(): Seen {
     run?.end();

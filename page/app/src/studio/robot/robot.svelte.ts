@@ -9,6 +9,7 @@ import type { News } from '../../link/words';
 import { Debugger } from '../../robot/debugger.svelte';
 import { Programs } from '../../robot/program.svelte';
 import { heard, language } from '../../words';
+import { orderOf, type Point } from '../run/point';
 import type { Studio } from '../studio.svelte';
 import { words } from './words';
 
@@ -35,6 +36,8 @@ export class Robot implements Taker {
   readonly #link: Link;
   readonly programs: Programs;
   readonly debugger: Debugger;
+  /** Breakpoints that it was given. */
+  #points: ReadonlyMap<string, Point> = new Map();
   #patching = false;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #opened = -1;
@@ -106,11 +109,17 @@ export class Robot implements Taker {
     this.sent = name;
     this.#newest = looks;
     this.#opened = this.studio.opened;
-    const breakpoints = [...this.studio.breakpoints];
-    this.debugger.plans.set(name, breakpoints);
-    if (breakpoints.length === 0) this.programs.run(name);
-    else await this.debugger.run(name, false);
-    if (this.debugger.why) this.refusal = heard(this.debugger.why);
+    this.#points = this.studio.breakpoints;
+    if (this.#points.size === 0) {
+      this.programs.run(name);
+      return;
+    }
+    // The person at this page answers questions of the program.
+    this.#link.request('questions');
+    if (!(await this.#ordered(`run ${name}`))) return;
+    const why = await this.#setAll();
+    await this.#ordered('continue');
+    this.refusal ||= why;
   }
 
   /** Everything to rest, and its program to its end. Works without control. */
@@ -123,20 +132,33 @@ export class Robot implements Taker {
   }
 
   async order(order: 'pause' | 'step' | 'continue'): Promise<void> {
-    if (!this.debugger.told?.attached) await this.debugger.order('attach');
-    await this.debugger.order(order);
-    this.refusal = heard(this.debugger.why);
+    if (!this.debugger.told?.attached) await this.#ordered('attach');
+    await this.#ordered(order);
   }
 
-  /** Breakpoints are at these blocks: also in the program that runs. */
-  async stopAt(wanted: ReadonlySet<string>): Promise<void> {
-    if (!this.isOurs || !this.mayAct) return;
-    const there = new Set(this.debugger.planned(this.sent));
-    const others = [
-      ...[...wanted].filter((id) => !there.has(id)),
-      ...[...there].filter((id) => !wanted.has(id)),
-    ];
-    for (const id of others) await this.debugger.toggle(this.sent, id, true);
+  /** Breakpoints of the drawing are those of the program that runs, too. */
+  async stopAt(points: ReadonlyMap<string, Point>): Promise<void> {
+    if (!this.isOurs || !this.mayAct || points === this.#points) return;
+    this.#points = points;
+    if (!this.debugger.told?.attached && !(await this.#ordered('attach'))) return;
+    await this.#ordered('clear all');
+    this.refusal = await this.#setAll();
+  }
+
+  /** Why the first one that is not set was refused; empty if all are. */
+  async #setAll(): Promise<string> {
+    let why = '';
+    for (const [id, point] of this.#points) {
+      if (!(await this.#ordered(orderOf(id, point)))) why ||= this.refusal;
+    }
+    return why;
+  }
+
+  /** Gives an order to the debugger; a refusal is kept. */
+  async #ordered(order: string): Promise<boolean> {
+    const answer = await this.debugger.order(order);
+    this.refusal = heard(this.debugger.why);
+    return answer?.done === true;
   }
 
   /** What is drawn has changed: the program that runs becomes that, unless it has mistakes. */

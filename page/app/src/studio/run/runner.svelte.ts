@@ -1,10 +1,12 @@
-// A run of the project in its world: begun, held, stepped, as fast as a person wants, to its verdict.
+// A run of the project in its world: begun, held, stepped and taken back, as fast as a person wants, to its verdict.
 //
-// Owns the clock of the page. The run itself is in a Worker, which is ended and begun anew when it does not answer.
+// Owns the clock of the page, and which moment is seen. The run itself is in a Worker, which is ended and begun anew when it
+// does not answer.
 
-import { SAID_LINES_MAX } from '../../limits';
+import { GRAPH_NUMBERS_MAX, SAID_LINES_MAX } from '../../limits';
 import { language } from '../../words';
 import type { Around } from '../../world/around';
+import type { Heat } from '../../world/heat';
 import { Trail } from '../../world/trail';
 import type { Scene as WorldScene, WorldState } from '../../world/types';
 import type { Judged, Message, Scene, State } from '../engine/facts';
@@ -12,6 +14,10 @@ import { Remote } from '../engine/remote';
 import type { RunCalls, Seen } from '../engine/runs.worker';
 import type { Studio } from '../studio.svelte';
 import { words } from '../words';
+import { Moments } from './moments';
+import { orderOf, orders, type Point } from './point';
+import type { Answered, HeldState } from './told';
+import { words as own } from './words';
 
 /** Model time of one tick. */
 const TICK_MS = 10;
@@ -32,12 +38,28 @@ export class Runner {
   isEnded = $state(false);
   /** The program is held before a block. */
   isHeld = $state(false);
+  /** Where the program was when it was held last, or when it ended. */
+  told = $state.raw<HeldState | undefined>(undefined);
+  /** A time that is to be looked at, in milliseconds, until it is seen. */
+  wanted_ms = $state<number | undefined>(undefined);
+  /** Variables after a change of which it stops. */
+  watches = $state.raw<ReadonlySet<string>>(new Set());
+  /** Names of the numbers of which there are graphs. */
+  graphed = $state.raw<readonly string[]>([]);
   /** The changed program is not in force, and why. */
   lag = $state('');
+  /** Breakpoints that are not set, and why. */
+  unset = $state('');
   refusal = $state('');
   speed = $state(1);
   seed = $state(1);
   readonly trail = new Trail();
+  /** Of many runs; shown until another run begins. */
+  heat = $state.raw<Heat | undefined>(undefined);
+  /** What it has come through. */
+  readonly moments = new Moments();
+  /** Another number after each look, for what shows `moments`. */
+  beat = $state(0);
   #remote: Remote<RunCalls> | undefined;
   #frame = 0;
   #last = 0;
@@ -54,20 +76,61 @@ export class Runner {
     return { scene, state, trail, isGround: false, look: () => undefined };
   }
 
+  /** A moment before the newest one is seen. */
+  get isPast(): boolean {
+    return this.hasPast && this.told?.state === 'past';
+  }
+
+  /** There is a past to look at. */
+  get hasPast(): boolean {
+    return this.told !== undefined && (this.isHeld || this.outcome !== undefined);
+  }
+
+  get isSearching(): boolean {
+    return this.hasPast && this.told?.state === 'searching';
+  }
+
+  /** Model time of what is seen, in milliseconds. */
+  get seen_ms(): number {
+    return (this.isPast ? this.told?.ms : undefined) ?? this.state?.ms ?? 0;
+  }
+
+  /** Names and values of variables at the moment that is seen. */
+  get variables(): [name: string, value: string][] {
+    if (this.isPast) return (this.told?.variables ?? []).map(({ name, value }) => [name, value]);
+    return Object.entries(this.state?.variables ?? {});
+  }
+
+  /** Motors and sensors at the moment that is seen. */
+  get ports(): [name: string, value: number][] {
+    const { motors = {}, sensors = {} } = this.state ?? {};
+    const now = Object.entries({ ...motors, ...sensors });
+    if (!this.isPast) return now;
+    const then = this.moments.numbersAt(this.seen_ms);
+    return now.flatMap(([name]) => {
+      const value = then[name];
+      return value === undefined ? [] : [[name, value]];
+    });
+  }
+
+  /** Blocks in which threads are, with their diagrams. */
+  get #places(): { diagram: string; id: string }[] {
+    if (this.isPast) return (this.told?.threads ?? []).flatMap(({ at }) => (at ? [at] : []));
+    return this.isRunning ? (this.state?.threads ?? []) : [];
+  }
+
   /** Names of the diagrams in which threads are. */
   get diagrams(): ReadonlySet<string> {
-    const threads = this.isRunning ? (this.state?.threads ?? []) : [];
-    return new Set(threads.map(({ diagram }) => diagram));
+    return new Set(this.#places.map(({ diagram }) => diagram));
   }
 
   /** Blocks in which threads are. */
   get lit(): ReadonlySet<string> {
-    const threads = this.isRunning ? (this.state?.threads ?? []) : [];
-    return new Set(threads.map(({ id }) => id));
+    return new Set(this.#places.map(({ id }) => id));
   }
 
   /** The world with the robot at its start; whatever ran is over. */
-  async look(): Promise<void> {
+  async stand(): Promise<void> {
     this.outcome = undefined;
     this.said = [];
     const seen = await this.#begin();
@@ -96,9 +159,64 @@ export class Runner {
     await this.#order('continue');
   }
 
-  /** To the next block. */
-  async step(): Promise<void> {
-    await this.#order('step');
+  /** To another block or moment, in the words of docs/protocol.md; why not, and what it has come to. */
+  async order(order: string): Promise<Answered> {
+    // A key may come again before a step is over.
+    return this.hasPast ? this.#order(order) : { why: '', value: '' };
+  }
+
+  /** The same for what only looks: what is refused is told by the answer alone. */
+  async look(order: string): Promise<Answered> {
+    const answered = await this.#order(order);
+    if (answered.why) this.refusal = '';
+    return answered;
+  }
+
+  /** Looks at a time of the past, or at the present; while one is looked for, the last that was asked for counts. */
+  async goTo(ms: number): Promise<void> {
+    const isGoing = this.wanted_ms !== undefined;
+    this.wanted_ms = ms;
+    if (isGoing) return;
+    for (let seen_ms: number | undefined; this.wanted_ms !== seen_ms && this.hasPast;) {
+      seen_ms = this.wanted_ms;
+      const isPresent = seen_ms >= (this.state?.ms ?? 0);
+      if (!isPresent) await this.#order(`back to ${Math.round(seen_ms)}`);
+      else if (this.isPast) await this.#order('present');
+    }
+    this.wanted_ms = undefined;
+  }
+
+  /** What is wrong with a breakpoint; empty: nothing that is known before the program runs. */
+  async wrongWith(id: string, point: Point): Promise<string> {
+    const bytes = await this.studio.bytes();
+    if (!bytes) return '';
+    try {
+      return await this.#worker().call('wrongWith', this.studio.name, bytes, orderOf(id, point), language);
+    } catch (error) {
+      this.#fail(error);
+      return '';
+    }
+  }
+
+  /** Another project has other variables. */
+  forget(): void {
+    this.watches = new Set();
+    this.graphed = [];
+  }
+
+  /** There is a graph of this number, or no longer. */
+  toggleGraph(name: string): void {
+    const others = this.graphed.filter((one) => one !== name);
+    if (others.length < this.graphed.length) this.graphed = others;
+    else if (others.length < GRAPH_NUMBERS_MAX) this.graphed = [...others, name];
+    else this.refusal = own.mostNumbers(GRAPH_NUMBERS_MAX);
+  }
+
+  /** It stops after each change of this variable, or does so no longer. */
+  toggleWatch(name: string): void {
+    const all = new Set(this.watches);
+    if (!all.delete(name)) all.add(name);
+    this.watches = all;
   }
 
   /** Puts the program as it is drawn now into the run. */
@@ -109,27 +227,50 @@ export class Runner {
     try {
       const why = await this.#remote.call('patch', this.studio.name, bytes, language);
       this.lag = why ? words.notInForce(why) : '';
+      // A new version is put into the present.
+      if (this.isPast) await this.#order('look');
     } catch (error) {
       this.#fail(error);
     }
   }
 
-  /** Breakpoints are those of the studio from now on. */
-  async stopAt(breakpoints: ReadonlySet<string>): Promise<void> {
-    if (this.isRunning) await this.#remote?.call('stopAt', [...breakpoints]);
+  /** It stops there from now on, and nowhere else. */
+  async stopAt(points: ReadonlyMap<string, Point>, watches: ReadonlySet<string>): Promise<void> {
+    if (!this.#remote || !(this.isRunning || this.hasPast)) return;
+    const unset = await this.#remote.call('stopAt', orders(points, watches));
+    this.unset = unset.join('\n');
   }
 
-  async #order(order: string): Promise<void> {
-    if (!this.#remote || !this.isRunning) return;
+  async #order(order: string): Promise<Answered> {
+    const nothing = { why: '', value: '' };
+    if (!this.#remote || !(this.isRunning || this.hasPast)) return nothing;
+    let answered: Answered = nothing;
+    const number = this.#number;
     try {
-      const seen = await this.#remote.call('order', order);
-      if (typeof seen === 'string') this.refusal = seen;
-      else this.#take(seen);
+      const { seen, ...answer } = await this.#remote.call('order', order);
+      if (number !== this.#number) return nothing;
+      answered = answer;
+      this.refusal = answer.why;
+      this.#take(seen);
     } catch (error) {
       this.#fail(error);
     }
+    await this.#search(number);
     this.#last = performance.now();
     this.#next();
+    return answered;
+  }
+
+  /** A way back may be long: it is gone in pieces, so that it can be given up between them. */
+  async #search(number: number): Promise<void> {
+    while (this.#remote && this.isSearching && number === this.#number) {
+      try {
+        const seen = await this.#remote.call('tick', 1);
+        if (number === this.#number) this.#take(seen);
+      } catch (error) {
+        this.#fail(error);
+      }
+    }
   }
 
   async end(): Promise<void> {
@@ -146,30 +287,34 @@ export class Runner {
 
   async #begin(): Promise<Seen | undefined> {
     cancelAnimationFrame(this.#frame);
-    this.isRunning = false;
-    this.refusal = this.lag = '';
+    this.isRunning = this.isHeld = false;
+    this.told = undefined;
+    this.refusal = this.lag = this.unset = '';
     this.#number += 1;
     const bytes = await this.studio.bytes();
     if (!bytes) return undefined;
-    this.#remote ??= new Remote<RunCalls>(
-      new Worker(new URL('../engine/runs.worker.ts', import.meta.url), { type: 'module' }),
-    );
+    const stops = orders(this.studio.breakpoints, this.watches);
     try {
-      const begun = await this.#remote.call(
-        'begin',
-        this.studio.name,
-        bytes,
-        this.seed,
-        [...this.studio.breakpoints],
-        language,
-      );
+      const begun = await this.#worker().call('begin', this.studio.name, bytes, this.seed, language, stops);
       this.trail.clear();
-      if (typeof begun !== 'string') return begun;
+      this.heat = undefined;
+      this.moments.clear();
+      if (typeof begun !== 'string') {
+        this.unset = begun.unset.join('\n');
+        return begun.seen;
+      }
       this.refusal = words.notRun(begun);
     } catch (error) {
       this.#fail(error);
     }
     return undefined;
+  }
+
+  #worker(): Remote<RunCalls> {
+    this.#remote ??= new Remote<RunCalls>(
+      new Worker(new URL('../engine/runs.worker.ts', import.meta.url), { type: 'module' }),
+    );
+    return this.#remote;
   }
 
   #next(): void {
@@ -201,19 +346,33 @@ export class Runner {
     this.#isAsked = false;
   }
 
-  #take({ progress, state, messages, printed, way, scene, outcome }: Seen): void {
+  #take(seen: Seen): void {
+    const { progress, state, messages, printed, log, way, scene, moments, told } = seen;
     for (let at = 0; at + 1 < way.length; at += 2) this.trail.step(0, way[at] ?? NaN, way[at + 1] ?? NaN);
+    for (const moment of moments) this.moments.put(moment);
+    this.beat += 1;
     if (scene) this.scene = shown(scene);
     this.state = state;
+    this.told = told ?? this.told;
     this.isHeld = progress === 'held';
-    this.world = stateOf(state);
-    const lines = printed.map((text): Message => ({ level: 'log', ms: state.ms, place: '', text }));
+    this.world = this.isPast ? this.#pastWorld(told?.ms ?? 0) : stateOf(state);
+    const lines = [...printed, ...log].map((text): Message => ({
+      level: 'log',
+      ms: state.ms,
+      place: '',
+      text,
+    }));
     if (messages.length + lines.length > 0)
       this.said = [...this.said, ...messages, ...lines].slice(-SAID_LINES_MAX);
     if (progress === 'over') {
       this.isRunning = false;
-      this.outcome = outcome;
+      this.outcome = seen.outcome;
     }
+  }
+
+  #pastWorld(ms: number): WorldState | undefined {
+    const moving = this.moments.at(ms);
+    return moving ? worldOf({ t: ms / 1000, ...moving }) : this.world;
   }
 
   #fail(error: unknown): void {
@@ -229,6 +388,9 @@ function shown(scene: Scene): WorldScene {
 }
 
 function stateOf({ world }: State): WorldState {
-  const { t, robots, things } = world;
+  return worldOf(world);
+}
+
+function worldOf({ t, robots, things }: Pick<WorldState, 't' | 'robots' | 'things'>): WorldState {
   return { t, robots, things, paused: false, speed: 1, led: '', said: '', faults: {} };
 }
