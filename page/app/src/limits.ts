@@ -112,3 +112,14 @@ export const SAID_LINES_MAX = 500;
 /** Runs with other random numbers, one after the other on each core. */
 export const MANY_RUNS_MAX = 500;
 export const MANY_WORKERS_MAX = 8;
+/** Letters of a world that the studio edits: as many bytes as a part of a project may have. */
+export const XML_LETTERS_MAX = 32 << 20;
+/** Tags of it, and how deep they stand, as the reader of worlds takes them. */
+export const XML_TAGS_MAX = 100_000;
+export const XML_DEPTH_MAX = 64;
+/** Things of a world that are drawn to be edited; all of them are in the picture of the run. */
+export const WORLD_DRAWN_MAX = 3000;
+/** Tags of rules that are shown as forms; more are edited as text. */
+export const RULE_FORMS_MAX = 2000;
+/** After the last letter, before rules that are typed are taken. */
+export const RULES_AFTER_MS = 400;
