@@ -42,6 +42,8 @@ const colours = HighlightStyle.define([
   { tag: [tags.string, tags.special(tags.string)], color: 'var(--line-3)' },
   { tag: [tags.number, tags.bool, tags.null, tags.atom], color: 'var(--line-2)' },
   { tag: tags.comment, color: 'var(--dim)', fontStyle: 'italic' },
+  { tag: [tags.tagName, tags.angleBracket], color: 'var(--line-1)' },
+  { tag: tags.attributeName, color: 'var(--line-2)' },
   { tag: [tags.definition(tags.variableName), tags.function(tags.variableName)], color: 'var(--line-1)' },
 ]);
 

@@ -68,6 +68,7 @@ const attributes: Record<string, string> = {
   angularDamping: 'Damping of turns, 1/s',
   linearDamping: 'Damping of ways, 1/s',
   position: 'Place',
+  corner: 'Upper left corner, unturned',
   direction: 'Direction',
   left: 'Left wheel',
   right: 'Right wheel',

@@ -22,6 +22,8 @@ export type Takes =
 export interface AttributeFacts {
   name: string;
   takes: Takes;
+  /** The name of its title, if it is not that of the attribute. */
+  title?: string;
   /** What counts where it is not written; of lengths in pixels. */
   default: string;
   choices?: readonly string[];
@@ -508,7 +510,7 @@ export const KINDS: readonly Kind[] = [
     tag: 'robot',
     list: 'robots',
     attributes: [
-      facts('position', 'point', '0'),
+      facts('position', 'point', '0', { title: 'corner' }),
       facts('direction', 'angle', '0'),
       facts('width', 'length', String(ROBOT_PX)),
       facts('height', 'length', String(ROBOT_PX)),

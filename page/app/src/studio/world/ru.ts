@@ -117,6 +117,7 @@ export const ru: Words = {
     angularDamping: 'Затухание вращения, 1/с',
     linearDamping: 'Затухание движения, 1/с',
     position: 'Место',
+    corner: 'Левый верхний угол, без поворота',
     direction: 'Направление',
     left: 'Левое колесо',
     right: 'Правое колесо',
