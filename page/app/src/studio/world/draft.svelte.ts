@@ -68,13 +68,21 @@ export class WorldDraft {
     return this.model?.byKey.get(this.chosen);
   }
 
+  /** The tags that findings are about. */
+  readonly tagged = $derived.by((): { finding: Finding; tag: Tag }[] =>
+    this.studio.worldFindings.flatMap((finding) => {
+      const tag = this.#tagOf(finding);
+      return tag ? [{ finding, tag }] : [];
+    }),
+  );
+
   /** The worst finding of each thing. */
   readonly findings = $derived.by((): ReadonlyMap<string, Finding> => {
     const keys = new Map([...(this.model?.tags ?? [])].map(([key, tag]) => [tag, key]));
     const found = new Map<string, Finding>();
-    for (const finding of this.studio.worldFindings) {
-      for (let tag = this.tagOf(finding); tag; tag = tag.outside) {
-        const key = keys.get(tag);
+    for (const { finding, tag } of this.tagged) {
+      for (let at: Tag | undefined = tag; at; at = at.outside) {
+        const key = keys.get(at);
         if (key === undefined) continue;
         if (!found.has(key)) found.set(key, finding);
         break;
@@ -84,7 +92,7 @@ export class WorldDraft {
   });
 
   /** The tag that a finding is about. */
-  tagOf({ line, column }: Finding): Tag | undefined {
+  #tagOf({ line, column }: Finding): Tag | undefined {
     const found = this.model;
     if (!found || line === null) return undefined;
     return tagAt(found.document.root, letterAt(found.document.text, line, column ?? 1));
@@ -121,7 +129,7 @@ export class WorldDraft {
   #seek(finding: Finding): void {
     const found = this.model;
     this.studio.sought = undefined;
-    const tag = this.tagOf(finding);
+    const tag = this.#tagOf(finding);
     if (!found || !tag) return;
     const { constraints } = found;
     if (constraints && tag.from >= constraints.from && tag.to <= constraints.to) {

@@ -279,7 +279,7 @@ export function remove({ text }: XmlDocument, tag: Tag): Splice[] {
   return [{ from: tag.from - indent(text, tag).length, to: tag.to, text: '' }];
 }
 
-/** Puts a text in the place of a tag. */
+/** Puts a text where a tag is, which goes. */
 export function replace({ text }: XmlDocument, tag: Tag, xml: string): Splice[] {
   const space = indent(text, tag);
   return [{ from: tag.from, to: tag.to, text: space ? xml.replaceAll('\n', space) : xml }];
