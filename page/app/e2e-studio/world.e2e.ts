@@ -44,7 +44,7 @@ async function worldOf(page: Page): Promise<string> {
 }
 
 /** A save of a program that drives ahead for some seconds. */
-async function ahead(): Promise<Uint8Array> {
+async function ahead(world?: string): Promise<Uint8Array> {
   const made = (await library()).blank('ahead.qrs');
   if (!made.ok) throw new Error('no draft');
   const draft = made.value;
@@ -66,15 +66,16 @@ async function ahead(): Promise<Uint8Array> {
   const added = draft.apply(change);
   if (!added.ok) throw new Error(added.error.problems[0]?.message);
   const connected = draft.apply({ do: 'connect', from: start, to: added.value[0] ?? '', guard: '' });
+  if (world !== undefined) draft.apply({ do: 'world', text: world });
   const saved = draft.save();
   if (!connected.ok || !saved.ok) throw new Error('no save');
   return saved.value;
 }
 
-async function opened(options = {}): Promise<Page> {
+async function opened(options = {}, world?: string): Promise<Page> {
   const page = await look.open(site.url, options);
   await page.locator('.svelte-flow__node').first().waitFor();
-  const buffer = Buffer.from(await ahead());
+  const buffer = Buffer.from(await ahead(world));
   const chosen = { name: 'ahead.qrs', mimeType: 'application/zip', buffer };
   await page.locator('input[type=file][accept=".qrs"]').setInputFiles(chosen);
   await page.getByRole('heading', { name: 'ahead.qrs' }).waitFor();
@@ -159,6 +160,13 @@ test('rules as text are taken when they can be read, and mistakes lead to their 
   await page.keyboard.press('Control+a');
   await page.keyboard.insertText('<constraints>\n<timelimit value="1000"/>\n<event id="a">\n</constraints>');
   await page.getByText('Not taken yet. Line 4').waitFor();
+  expect(await worldOf(page)).toContain('value="60000"');
+  // What only the draft refuses stays to be mended, too.
+  await text.click();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.insertText('<constraints>\n<timelimit value="&nothing;"/>\n</constraints>');
+  await page.getByText('Not taken yet. Line 1').waitFor();
+  expect(await text.textContent()).toContain('&nothing;');
   expect(await worldOf(page)).toContain('value="60000"');
   await text.click();
   await page.keyboard.press('Control+a');
@@ -270,6 +278,21 @@ test('a finger looks around, and moves what it has chosen', async () => {
 });
 
 test('a world that cannot be read is told, and mended as text', async () => {
+  const page = await opened({}, '<root><walls/></root>');
+  await button(page, 'World').click();
+  await page.getByText('The world cannot be read. Line 1, column 1').waitFor();
+  await button(page, 'Rules').click();
+  await page.locator('.cm-content').click();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.insertText('<root><world/><robots><robot id="trikKitRobot"/></robots></root>');
+  await page.getByText('This world has no rules').waitFor();
+  await button(page, 'World').click();
+  await item(page, 'robot 0').waitFor();
+  expect(await worldOf(page)).toContain('<world/>');
+  await page.context().close();
+});
+
+test('thousands of things of a stranger, and names with scripts, do no harm', async () => {
   const page = await opened();
   await button(page, 'World').click();
   await button(page, 'Make a world').click();

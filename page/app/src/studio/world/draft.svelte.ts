@@ -108,12 +108,13 @@ export class WorldDraft {
     await this.put(NEW_WORLD);
   }
 
-  /** Another text. What is shown is that at once; what the draft refuses is as it was before. */
-  async put(text: string): Promise<void> {
-    if (this.isFixed || text === this.text) return;
+  /** Another text. What is shown is that at once; what the draft refuses, which is told, is as it was before. */
+  async put(text: string): Promise<boolean> {
+    if (this.isFixed || text === this.text) return true;
     this.text = text;
     this.#number += 1;
     await this.studio.apply({ do: 'world', text });
+    return this.studio.refusal === '';
   }
 
   async #look(): Promise<void> {
@@ -121,7 +122,8 @@ export class WorldDraft {
     const text = await this.studio.world();
     // A later change has its own look.
     if (number !== this.#number) return;
-    this.text = text;
+    // Some saves have an empty one.
+    this.text = text?.trim() ? text : undefined;
     this.isRead = true;
   }
 

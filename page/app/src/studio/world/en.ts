@@ -118,7 +118,7 @@ const faults: Record<WorldFault['fault'], string> = {
   noRoot: 'there is not exactly one outermost tag',
   notClosed: 'a tag, a comment or something else begins here and does not end',
   wrongEnd: 'a tag ends here that was not opened, or another one is open',
-  badTag: 'this is no tag, or one of its attributes has no value in quotes',
+  badTag: 'this is no tag, or one of its attributes has no value in quotes or is there twice',
   tooDeep: 'tags stand too deep in each other',
   tooMany: 'there are too many tags',
   tooLong: 'the text is too long',

@@ -205,6 +205,9 @@ const REGION: readonly AttributeFacts[] = [
   facts('textY', 'length', '0'),
 ];
 
+/** An id that a person has given: others are long and say nothing. */
+export const nameOf = (id: string): string => (id.startsWith('{') ? '' : id);
+
 function region(values: Values, path: string): Outline {
   const [x, y] = values.pair(['x', 'y']);
   const [right, down] = values.pair(['textX', 'textY']);
@@ -216,7 +219,7 @@ function region(values: Values, path: string): Outline {
     width: 2,
     dash: values.text('visible') === 'true' ? '' : '6 4',
     fill: isFilled ? tint : 'none',
-    caption: values.text('text') || values.text('id'),
+    caption: values.text('text') || nameOf(values.text('id')),
     captionAt: [x + right, y + down],
   };
 }
@@ -272,6 +275,18 @@ const PICTURE: readonly AttributeFacts[] = [
   facts('isBackground', 'truth', 'false'),
 ];
 
+/** The attribute in which a picture has its place: old worlds have another one. */
+export const pictureRect = (values: Values): string =>
+  values.has('backgroundRect') ? 'backgroundRect' : 'rect';
+
+/** Where a picture is: its rectangle, moved. */
+export function pictureBox(values: Values): [number, number, number, number] {
+  const name = pictureRect(values);
+  const [x = 0, y = 0, width = 0, height = 0] = values.lengths(name, 4);
+  const [right, down] = name === 'rect' ? values.point('position') : [0, 0];
+  return [x + right, y + down, width, height];
+}
+
 /** A picture: its place alone; what it shows is in the save. */
 function picture(name: 'background' | 'image', list: string): Kind {
   return {
@@ -282,19 +297,10 @@ function picture(name: 'background' | 'image', list: string): Kind {
     moves: [{ is: 'box', name: 'rect' }],
     grips: [{ is: 'box', name: 'rect' }],
     outline(values) {
-      const [x = 0, y = 0, width = 0, height = 0] = values.lengths('rect', 4);
-      const [right, down] = values.point('position');
-      const path = rectangle(x + right, y + down, width, height);
-      const caption = values.text('imageId').slice(0, 12);
-      return {
-        path,
-        stroke: '#8a8f94',
-        width: 1,
-        dash: '3 3',
-        fill: '#8a8f9422',
-        caption,
-        captionAt: [x, y],
-      };
+      const [x, y, width, height] = pictureBox(values);
+      const path = rectangle(x, y, width, height);
+      // What it shows is drawn below it.
+      return { path, stroke: '#8a8f94', width: 1, dash: '3 3', fill: '#8a8f9400' };
     },
   };
 }

@@ -9,6 +9,7 @@ import {
   boundsOf,
   changed,
   drawnTo,
+  gripAt,
   isFault,
   model,
   shifted,
@@ -105,6 +106,19 @@ test('what is moved is moved whole, in the unit of the file', () => {
   expect(placed).toBe(
     text.replace('position="1:1"', 'position="5:5"').replace('M3"/>', 'M3" right="M4###output######M4"/>'),
   );
+});
+
+test('a picture is where its rectangle is moved to, and keeps that', () => {
+  const text = `<root><settings/><world><images><image rect="0:0:100:50" position="10:20"/>
+    <image backgroundRect="5:5:10:10"/></images></world></root>`;
+  const world = opened(text);
+  const [first, old] = ['image 0', 'image 1'].map((key) => world.byKey.get(key));
+  const [corner] = first?.kind.grips ?? [];
+  if (!first || !old || !corner) throw new Error('no pictures');
+  expect(gripAt(first, corner, 0)).toEqual([110, 70]);
+  expect(shifted(first, 5, 5)).toEqual({ rect: '5:5:100:50' });
+  expect(drawnTo(first, corner, [60, 60])).toEqual({ rect: '0:0:50:40' });
+  expect(shifted(old, 5, 5)).toEqual({ backgroundRect: '10:10:10:10' });
 });
 
 test('things whose text is the same stay the same objects', () => {

@@ -2,7 +2,16 @@
 //
 // Owns where tags of a world stand and which of them count. How each kind looks is known to `kinds`, how texts change to `xml`.
 
-import { type AttributeFacts, type Grip, KINDS, type Kind, ROBOT_PX, line } from './kinds';
+import {
+  type AttributeFacts,
+  type Grip,
+  KINDS,
+  type Kind,
+  ROBOT_PX,
+  line,
+  pictureBox,
+  pictureRect,
+} from './kinds';
 import { type Spot, UNITS, type Unit, Values } from './units';
 import {
   type Splice,
@@ -275,8 +284,9 @@ export function moved(
       return { [grip.names[0]]: values.write(across), [grip.names[1]]: values.write(high) };
     }
     case 'box': {
-      const [x = 0, y = 0, width = 0, height = 0] = values.lengths(grip.name, 4);
-      return { [grip.name]: values.writePoint(x + right, y + down, width, height) };
+      const name = pictureRect(values);
+      const [x = 0, y = 0, width = 0, height = 0] = values.lengths(name, 4);
+      return { [name]: values.writePoint(x + right, y + down, width, height) };
     }
     case 'turn':
       return {};
@@ -316,7 +326,7 @@ export function gripAt({ values, kind }: Item, grip: Grip, reach: number): Spot 
       return [x + width, y + height];
     }
     case 'box': {
-      const [x = 0, y = 0, width = 0, height = 0] = values.lengths(grip.name, 4);
+      const [x, y, width, height] = pictureBox(values);
       return [x + width, y + height];
     }
     case 'turn': {
@@ -338,8 +348,10 @@ export function drawnTo(item: Item, grip: Grip, [x, y]: Spot): Record<string, st
   }
   const [fromX, fromY] = gripAt(item, grip, 0);
   if (grip.is !== 'box') return moved(item, grip, x - fromX, y - fromY);
-  const [left = 0, top = 0] = values.lengths(grip.name, 4);
-  return { [grip.name]: values.writePoint(left, top, Math.max(x - left, 1), Math.max(y - top, 1)) };
+  const name = pictureRect(values);
+  const [left = 0, top = 0] = values.lengths(name, 4);
+  const [seenX, seenY] = pictureBox(values);
+  return { [name]: values.writePoint(left, top, Math.max(x - seenX, 1), Math.max(y - seenY, 1)) };
 }
 
 /** Where a thing is taken to be when it snaps to the grid. */
@@ -348,7 +360,9 @@ export function anchorOf(item: Item): Spot {
   const { turn } = kind.outline(values);
   if (turn) return turn.at;
   const [first] = kind.moves;
-  return first ? gripAt(item, first.is === 'box' ? { is: 'point', name: first.name } : first, 0) : [0, 0];
+  if (!first) return [0, 0];
+  const [x, y] = pictureBox(values);
+  return first.is === 'box' ? [x, y] : gripAt(item, first, 0);
 }
 
 /** A name that nothing in the world has. */

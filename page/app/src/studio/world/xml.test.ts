@@ -103,6 +103,7 @@ test.each([
   ['</a>', 'wrongEnd'],
   ['<a b=1/>', 'badTag'],
   ['<a b="1', 'badTag'],
+  ['<a b="1" b="2"/>', 'badTag'],
   ['<a', 'badTag'],
   ['<a><!-- ', 'notClosed'],
   ['<a><![CDATA[ </a>', 'notClosed'],

@@ -97,6 +97,7 @@ class Scanner {
     const name = this.match(NAME);
     if (!name) return undefined;
     const attributes: Attribute[] = [];
+    const names = new Set<string>();
     for (;;) {
       this.match(SPACE);
       const isWhole = this.text.startsWith('/>', this.at);
@@ -106,7 +107,9 @@ class Scanner {
         return { tag: { ...tag, closeFrom: this.at }, isWhole };
       }
       const attribute = this.attribute();
-      if (!attribute) return undefined;
+      // No tag has an attribute twice.
+      if (!attribute || names.has(attribute.name)) return undefined;
+      names.add(attribute.name);
       attributes.push(attribute);
     }
   }
