@@ -112,8 +112,20 @@ test('a world, its rules and a run, with the mouse', async () => {
 
   await button(page, 'Add: Wall').click();
   await stroke(page, at(20, 60), at(80, 60));
+  const sheet = page.getByRole('application', { name: 'The world to be edited' });
+  await sheet.getByRole('button', { name: 'Nearer' }).click();
+  const near = (await spots(page))(0, 0);
   // A box without a height is not seen as one.
   await item(page, 'wall 4').waitFor({ state: 'attached' });
+  const wall = page.getByLabel('Properties of the thing').getByLabel('Begin: x');
+  await wall.fill('-200');
+  await wall.press('Enter');
+  await eventually('it is longer', async () => (await worldOf(page)).includes('begin="-200:60"'));
+  await wall.fill('20');
+  await wall.press('Enter');
+  // What is looked at stays where it is.
+  expect((await spots(page))(0, 0)).toEqual(near);
+  await sheet.getByRole('button', { name: 'Farther' }).click();
   await button(page, 'Add: Region').click();
   await stroke(page, at(90, 10), at(130, 50));
   await item(page, 'regionRectangle 0').waitFor();
@@ -191,6 +203,24 @@ test('rules as text are taken when they can be read, and mistakes lead to their 
   await eventually('it is changed', async () => (await worldOf(page)).includes('value="2000"'));
   expect(await worldOf(page)).toContain('<!-- kept -->\n<constraint failMessage="x">');
   expect(await worldOf(page)).toContain('<ts:timer-success-event timeout="300"/>');
+  await page.context().close();
+});
+
+test('a mistake of the world leads to its thing', async () => {
+  const page = await opened(
+    {},
+    `<root version="20251219"><settings sizeUnit="cm"/><world><walls>
+      <wall id="a" begin="0:0" end="50:0"/>
+      <wall id="a" begin="0:20" end="50:20"/></walls></world><robots><robot id="trikKitRobot"/></robots></root>`,
+  );
+  await page.getByText('Mistakes:').click();
+  await page.locator('li', { hasText: "has the id 'a' too" }).getByRole('button').click();
+  const form = page.getByLabel('Properties of the thing');
+  await form.getByText("has the id 'a' too").waitFor();
+  expect(await form.getByLabel('Begin: y').inputValue()).toBe('20');
+  await form.getByLabel('Name').fill('b');
+  await form.getByLabel('Name').press('Enter');
+  await form.getByText("has the id 'a' too").waitFor({ state: 'detached' });
   await page.context().close();
 });
 

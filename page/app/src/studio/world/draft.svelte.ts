@@ -13,6 +13,8 @@ export class WorldDraft {
   text = $state.raw<string | undefined>(undefined);
   /** It was read once. */
   isRead = $state(false);
+  /** Which project it is that of: another number for another one. */
+  project = $state(-1);
   /** The key of a thing. */
   chosen = $state('');
   /** What the next stroke on the sheet makes. */
@@ -125,6 +127,7 @@ export class WorldDraft {
     // Some saves have an empty one.
     this.text = text?.trim() ? text : undefined;
     this.isRead = true;
+    this.project = this.studio.opened;
   }
 
   /** The place of a finding: the thing, or the line of the rules. */
