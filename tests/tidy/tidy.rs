@@ -263,7 +263,7 @@ fn sources_and_documents_are_ascii() {
     // What a new task tells pupils.
     let task = root().join("trik/src/task/README.ru.md");
     // What the pages say in Russian.
-    let pages = ["words", "class", "marks", "studio"]
+    let pages = ["words", "class", "marks", "studio", "studio/world"]
         .map(|part| root().join(format!("page/app/src/{part}/ru.ts")));
     // Pages that pupils and teachers read, in Russian.
     let documents = root().join("docs/ru");
