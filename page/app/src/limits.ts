@@ -127,3 +127,14 @@ export const FIELDS_MAX = 30;
 /** Projects of a folder that are listed, and entries of it that are looked at. */
 export const FOLDER_FILES_MAX = 200;
 export const FOLDER_ENTRIES_MAX = 5000;
+/** Letters of a world that the studio edits: as many bytes as a part of a project may have. */
+export const XML_LETTERS_MAX = 32 << 20;
+/** Tags of it, and how deep they stand, as the reader of worlds takes them. */
+export const XML_TAGS_MAX = 100_000;
+export const XML_DEPTH_MAX = 64;
+/** Things of a world that are drawn to be edited; all of them are in the picture of the run. */
+export const WORLD_DRAWN_MAX = 3000;
+/** Tags of rules that are shown as forms; more are edited as text. */
+export const RULE_FORMS_MAX = 2000;
+/** After the last letter, before rules that are typed are taken. */
+export const RULES_AFTER_MS = 400;

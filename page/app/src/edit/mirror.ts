@@ -13,6 +13,7 @@ import {
   syntaxHighlighting,
 } from '@codemirror/language';
 import { lua } from '@codemirror/legacy-modes/mode/lua';
+import { xml } from '@codemirror/legacy-modes/mode/xml';
 import { type Diagnostic, lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { Compartment, EditorState, type Extension, type Text } from '@codemirror/state';
@@ -32,6 +33,7 @@ const LANGUAGES: Record<string, () => Extension> = {
   py: python,
   js: javascript,
   lua: () => StreamLanguage.define(lua),
+  xml: () => StreamLanguage.define(xml),
 };
 
 /** Colours of the page, which follow the scheme by themselves. */
@@ -40,6 +42,8 @@ const colours = HighlightStyle.define([
   { tag: [tags.string, tags.special(tags.string)], color: 'var(--line-3)' },
   { tag: [tags.number, tags.bool, tags.null, tags.atom], color: 'var(--line-2)' },
   { tag: tags.comment, color: 'var(--dim)', fontStyle: 'italic' },
+  { tag: [tags.tagName, tags.angleBracket], color: 'var(--line-1)' },
+  { tag: tags.attributeName, color: 'var(--line-2)' },
   { tag: [tags.definition(tags.variableName), tags.function(tags.variableName)], color: 'var(--line-1)' },
 ]);
 
@@ -78,7 +82,7 @@ const look = EditorView.theme({
 /** What an editor is made with. */
 export interface Options {
   text: string;
-  /** `py`, `js` or `lua`; any other is plain text. */
+  /** `py`, `js`, `lua` or `xml`; any other is plain text. */
   language: string;
   /** For those who listen. */
   label: string;

@@ -24,6 +24,12 @@ import { PLAIN, type Point } from './run/point';
 import { fromLink, isLink } from './share';
 import { words } from './words';
 
+/** What of the project is in the middle of the page. */
+export type Part = 'program' | 'world' | 'rules';
+
+/** The part of a save in which findings of its world are. */
+const WORLD_PART = 'worldModel';
+
 const NONE: Looks = { findings: [], names: [], text: '', isWritten: true };
 
 export class Studio {
@@ -35,6 +41,9 @@ export class Studio {
   language = $state<Language | 'sentences'>('sentences');
   /** Ids of blocks before which a run stops, and when. */
   breakpoints = $state.raw<ReadonlyMap<string, Point>>(new Map());
+  part = $state<Part>('program');
+  /** A finding of the world whose place is looked for. */
+  sought = $state.raw<Finding | undefined>(undefined);
   /** What was not done, and why. */
   refusal = $state('');
   /** What was done. */
@@ -319,6 +328,23 @@ export class Studio {
     return undefined;
   }
 
+  /** The text of its world, if it has one. */
+  async world(): Promise<string | undefined> {
+    return await this.#drafts.call('world');
+  }
+
+  /** What is wrong with the world and its rules. */
+  get worldFindings(): Finding[] {
+    return this.looks.findings.filter(({ part }) => part === WORLD_PART);
+  }
+
+  /** Shows another part; what was chosen in the last one is no longer. */
+  turnTo(part: Part): void {
+    if (part === this.part) return;
+    this.part = part;
+    this.chosen = new Set();
+  }
+
   /** Puts the project into another world, if that is one. */
   async loadWorld(name: string, text: string): Promise<void> {
     const why = await this.#drafts.call('wrongWith', text);
@@ -348,7 +374,14 @@ export class Studio {
   }
 
   /** Where something is wrong: its diagram, with the block chosen. */
-  async goTo({ diagram, object }: Pick<Finding, 'diagram' | 'object'>): Promise<void> {
+  async goTo(finding: Finding): Promise<void> {
+    const { diagram, object } = finding;
+    if (finding.part === WORLD_PART) {
+      if (this.part === 'program') this.turnTo('world');
+      this.sought = finding;
+      return;
+    }
+    this.turnTo('program');
     await this.seeNamed(diagram ?? '');
     if (object) this.chosen = new Set([object]);
   }

@@ -105,6 +105,8 @@ const calls = {
     const saved = must().stored();
     return saved.ok ? saved.value : said(saved.error.problems);
   },
+  /** The text of the world, if there is one. */
+  world: () => must().world(),
   /** What is wrong with a world; empty if it can be run in. */
   wrongWith(world: string): string {
     const found = web.lint('world.xml', new TextEncoder().encode(world), { locale });

@@ -42,6 +42,7 @@ const property = (
   default: byDefault,
   takes: 'expression',
   choices,
+  choiceTitles: choices,
 });
 const PROPERTIES: Record<string, PaletteBlock['properties']> = {
   Function: [{ ...property('Body', ''), takes: 'statements' }],

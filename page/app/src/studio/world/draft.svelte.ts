@@ -1,0 +1,154 @@
+// The world of the draft that is edited: its text, the things in it, what is chosen.
+//
+// Owns the way from a change to the draft and back. Changes are those of the draft, so that they are taken back as all others.
+
+import type { Finding } from '../engine/facts';
+import type { Studio } from '../studio.svelte';
+import type { KindName } from './kinds';
+import { type Item, NEW_WORLD, type WorldFault, type WorldModel, isFault, model } from './model';
+import { type Splice, type Tag, letterAt, placeOf, spliced, tagAt } from './xml';
+
+export class WorldDraft {
+  /** Undefined: the project has no world. */
+  text = $state.raw<string | undefined>(undefined);
+  /** It was read once. */
+  isRead = $state(false);
+  /** Which project it is that of: another number for another one. */
+  project = $state(-1);
+  /** The key of a thing. */
+  chosen = $state('');
+  /** What the next stroke on the sheet makes. */
+  tool = $state<KindName | undefined>(undefined);
+  snaps = $state(true);
+  /** Rules are shown as text. */
+  isText = $state(false);
+  /** A line of the rules' text that is to be seen. */
+  line = $state.raw<{ line: number } | undefined>(undefined);
+  #before: WorldModel | undefined;
+  /** Of the change that was made last. */
+  #number = 0;
+
+  constructor(readonly studio: Studio) {
+    // Whatever has changed it: a hand, taking back, another project.
+    $effect(() => {
+      if (studio.drawing && studio.part !== 'program') void this.#look();
+    });
+    $effect(() => {
+      void studio.opened;
+      this.chosen = '';
+      this.tool = undefined;
+    });
+    $effect(() => {
+      const { sought } = studio;
+      if (sought && this.isRead) this.#seek(sought);
+    });
+  }
+
+  readonly #read = $derived.by((): WorldModel | WorldFault | undefined => {
+    if (this.text === undefined) return undefined;
+    const found = model(this.text, this.#before);
+    if (!isFault(found)) this.#before = found;
+    return found;
+  });
+
+  get model(): WorldModel | undefined {
+    return this.#read && !isFault(this.#read) ? this.#read : undefined;
+  }
+
+  /** Why its text is no world, and where. */
+  get fault(): (WorldFault & { line: number; column: number }) | undefined {
+    const read = this.#read;
+    return read && isFault(read) ? { ...read, ...placeOf(this.text ?? '', read.at) } : undefined;
+  }
+
+  /** It is that of a task, or there is none. */
+  get isFixed(): boolean {
+    return this.studio.hasTask;
+  }
+
+  get item(): Item | undefined {
+    return this.model?.byKey.get(this.chosen);
+  }
+
+  /** The tags that findings are about. */
+  readonly tagged = $derived.by((): { finding: Finding; tag: Tag }[] =>
+    this.studio.worldFindings.flatMap((finding) => {
+      const tag = this.#tagOf(finding);
+      return tag ? [{ finding, tag }] : [];
+    }),
+  );
+
+  /** The worst finding of each thing. */
+  readonly findings = $derived.by((): ReadonlyMap<string, Finding> => {
+    const keys = new Map([...(this.model?.tags ?? [])].map(([key, tag]) => [tag, key]));
+    const found = new Map<string, Finding>();
+    for (const { finding, tag } of this.tagged) {
+      for (let at: Tag | undefined = tag; at; at = at.outside) {
+        const key = keys.get(at);
+        if (key === undefined) continue;
+        if (!found.has(key)) found.set(key, finding);
+        break;
+      }
+    }
+    return found;
+  });
+
+  /** The tag that a finding is about. */
+  #tagOf({ line, column }: Finding): Tag | undefined {
+    const found = this.model;
+    if (!found || line === null) return undefined;
+    return tagAt(found.document.root, letterAt(found.document.text, line, column ?? 1));
+  }
+
+  /** Makes a change: one step to be taken back. */
+  async change(splices: readonly Splice[]): Promise<void> {
+    if (this.text === undefined || splices.length === 0) return;
+    await this.put(spliced(this.text, splices));
+  }
+
+  async make(): Promise<void> {
+    await this.put(NEW_WORLD);
+  }
+
+  /** Another text. What is shown is that at once; what the draft refuses, which is told, is as it was before. */
+  async put(text: string): Promise<boolean> {
+    if (this.isFixed || text === this.text) return true;
+    this.text = text;
+    this.#number += 1;
+    await this.studio.apply({ do: 'world', text });
+    return this.studio.refusal === '';
+  }
+
+  async #look(): Promise<void> {
+    const number = this.#number;
+    const text = await this.studio.world();
+    // A later change has its own look.
+    if (number !== this.#number) return;
+    // Some saves have an empty one.
+    this.text = text?.trim() ? text : undefined;
+    this.isRead = true;
+    this.project = this.studio.opened;
+  }
+
+  /** The place of a finding: the thing, or the line of the rules. */
+  #seek(finding: Finding): void {
+    const found = this.model;
+    this.studio.sought = undefined;
+    const tag = this.#tagOf(finding);
+    if (!found || !tag) return;
+    const { constraints } = found;
+    if (constraints && tag.from >= constraints.from && tag.to <= constraints.to) {
+      this.studio.turnTo('rules');
+      this.isText = true;
+      this.line = { line: (finding.line ?? 1) - placeOf(found.document.text, constraints.from).line + 1 };
+      return;
+    }
+    for (let at: Tag | undefined = tag; at; at = at.outside)
+      for (const [key, one] of found.tags) if (one === at) this.#choose(key);
+  }
+
+  #choose(key: string): void {
+    this.studio.turnTo('world');
+    this.chosen = key;
+  }
+}

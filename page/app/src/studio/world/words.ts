@@ -1,0 +1,7 @@
+// The words of the world editor in the language of the browser.
+
+import { language } from '../../words';
+import { en, type Words } from './en';
+import { ru } from './ru';
+
+export const words: Words = { en, ru }[language];
