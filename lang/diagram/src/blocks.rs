@@ -10,6 +10,7 @@ pub mod act;
 mod actions;
 pub mod choices;
 mod core;
+mod does;
 mod drawing;
 pub mod example;
 pub mod foreign;
@@ -24,7 +25,7 @@ mod tests;
 
 use super::ports::Kit;
 pub use act::Act;
-pub use core::Does;
+pub use does::Does;
 use example::Example;
 use lang_expr::Wanted;
 use lang_text::problem::{Locale, Words};
