@@ -14,6 +14,7 @@ use sim::judge::debugged::Debugged;
 use sim::judge::{self, Clock, Dataflow, Diagram, Outcome, Program, Settings, Task, Texts};
 use std::rc::Rc;
 use std::time::Duration;
+use studio::findings::Findings;
 use studio::program::Program as Opened;
 use studio::verdict::Verdict;
 
@@ -133,6 +134,22 @@ pub fn world(settings: &Settings) -> World {
     }
 }
 
+/// World and rules, with what is strange in them.
+///
+/// # Errors
+/// Either has mistakes.
+pub fn task(texts: Texts<'_>, locale: Locale) -> Result<(Task, Vec<Problem>), Box<Refused>> {
+    Task::read(texts).map_err(|problems| {
+        let is_error = |one: &&Problem| one.severity == Severity::Error;
+        let errors = problems.iter().filter(is_error);
+        Box::new(Refused {
+            lines: errors.map(|one| judge::report::text(one, locale)).collect(),
+            failure: Failure::World(problems),
+            verdict: Verdict::NotRun,
+        })
+    })
+}
+
 /// Puts a project into its world.
 ///
 /// # Errors
@@ -155,15 +172,7 @@ pub fn stage(project: &Project, wish: &Wish) -> Result<Staged, Box<Refused>> {
             templates: save.map(|save| &save.templates),
         },
     };
-    let (mut task, strange) = Task::read(texts).map_err(|problems| {
-        let is_error = |one: &&Problem| one.severity == Severity::Error;
-        let errors = problems.iter().filter(is_error);
-        Refused {
-            lines: errors.map(|one| judge::report::text(one, locale)).collect(),
-            failure: Failure::World(problems),
-            verdict: Verdict::NotRun,
-        }
-    })?;
+    let (mut task, strange) = task(texts, locale)?;
     let is_debugging = wish.is_debugging;
     let program = match &project.program {
         Opened::Diagram(opened) => {
@@ -208,7 +217,13 @@ pub fn judge(project: &Project, options: &str, clock: Clock) -> Answer<Value> {
             Ok(mut staged) => {
                 let program = staged.program.program();
                 let outcome = judge::judge(&staged.task, program, &wish.settings);
-                told(project, &staged.strange, &outcome, &wish.settings)
+                told(
+                    &project.name,
+                    project.findings(),
+                    &staged.strange,
+                    &outcome,
+                    &wish.settings,
+                )
             }
             Err(refused) => unrun(project, &refused, locale),
         }
@@ -216,9 +231,10 @@ pub fn judge(project: &Project, options: &str, clock: Clock) -> Answer<Value> {
     (judged, locale)
 }
 
-/// What came out of a run, as JSON.
+/// What came out of a run, as JSON. Findings know the places in the file of this name.
 pub fn told(
-    project: &Project,
+    name: &str,
+    findings: Findings<'_>,
     strange: &[Problem],
     outcome: &Outcome,
     settings: &Settings,
@@ -237,7 +253,7 @@ pub fn told(
         "messages": entries.take(limits::MESSAGES_MAX).map(message).collect::<Vec<_>>(),
         "more": more,
         "printed": outcome.printed,
-        "strange": project.findings().json(&project.name, strange, locale),
+        "strange": findings.json(name, strange, locale),
         "report": judge::report::write(&outcome.entries),
         "trajectory": trajectory,
     })
