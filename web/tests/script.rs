@@ -121,7 +121,7 @@ fn what_is_no_program_or_world_is_refused() {
 
 #[test]
 fn a_run_that_is_ended_has_an_outcome_and_answers_nothing() {
-    let mut script = begun("p.js", WORLD);
+    let mut script = begun("p.js", "");
     assert_eq!(script.ask("event", "100", 3), "later");
     script.end();
     assert_eq!(verdict(&script), "ended");

@@ -27,6 +27,9 @@ export const NOT_YET = 11;
 /** Ticks of 10 ms from picture to picture. */
 const PICTURE_TICKS = 2;
 const TICK_MS = 10;
+/** What is told of what a program prints: lines, and characters of each. The judge itself keeps less. */
+const LINES_MAX = 10_000;
+const LINE_LENGTH_MAX = 1000;
 /** When a program begins, before its own time does. */
 const BEGIN_MS = -30;
 
@@ -34,6 +37,9 @@ export class Link {
   /** Milliseconds since the program has begun. */
   now = 0;
   isOver = false;
+  /** What the program has printed and nobody has taken yet. */
+  printed: string[] = [];
+  #lines = 0;
   #at = BEGIN_MS;
   #left = PICTURE_TICKS;
   readonly #asker: Asker;
@@ -62,6 +68,10 @@ export class Link {
     this.now = Number(told.split(':', 2)[1]);
     this.#left -= (this.now - this.#at) / TICK_MS;
     this.#at = this.now;
+    if (word === 'print' && this.#lines < LINES_MAX) {
+      this.#lines += 1;
+      this.printed.push(text.replace(/\n$/, '').slice(0, LINE_LENGTH_MAX));
+    }
     if (this.#left <= 0) this.#picture();
     return told;
   }

@@ -52,6 +52,8 @@ const TOGETHER_MS = 100;
 const SCENE_EVERY = 10;
 /** Calls in a stack. */
 const CALLS = 50;
+/** Until a browser tells of a promise that has failed. */
+const LOST_MS = 20;
 
 const post = postMessage.bind(globalThis) as (told: Told) => void;
 const clock = performance.now.bind(performance);
@@ -69,12 +71,14 @@ class Watch {
 
   constructor(private readonly script: web.Script) {}
 
-  look(isOver: boolean): void {
+  look(link: Link): void {
+    const { isOver } = link;
     // Whatever a program does after its end, nobody is told.
     if (this.#isOver) return;
     this.#isOver = isOver;
     const { script } = this;
-    const { messages, printed } = script.news();
+    const { messages } = script.news();
+    const printed = link.printed.splice(0);
     let scene: Scene | undefined;
     if (this.#looks % SCENE_EVERY === 0 || isOver) {
       const still = script.scene();
@@ -110,7 +114,7 @@ async function runJavaScript(link: Link, text: string): Promise<void> {
     const made = robot(link, text, [base, codes, robotScript, talk]);
     program?.call(globalThis);
     // What was promised goes on once the text has ended.
-    await new Promise((done) => later(done, 0));
+    await new Promise((done) => later(done, LOST_MS));
     // It comes after what the program does in its promises.
     if (lost) throw (lost as { reason: unknown }).reason;
     if (made.hasEvents) made.loop();
@@ -132,10 +136,10 @@ async function begin({ name, text, world, seed, inputs, locale, python, broken }
   }
   const script = begun.value;
   const watch = new Watch(script);
-  const link: Link = new Link(script, () => watch.look(link.isOver));
+  const link: Link = new Link(script, () => watch.look(link));
   const engine = name.endsWith('.py') ? await (await import('./python')).python(python) : undefined;
   post({ kind: 'begun' });
-  watch.look(false);
+  watch.look(link);
   if (broken) {
     failed(link, broken);
   } else if (engine) {

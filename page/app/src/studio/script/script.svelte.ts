@@ -3,7 +3,7 @@
 // Owns which moment is shown, and the clock of showing. The run itself is in a Worker, faster than it is shown.
 
 import { ENGINE_MS_MAX, KEEP_AFTER_MS, PICTURES_MAX, SCRIPT_FILE_MB_MAX, SILENT_MS_MAX } from '../../limits';
-import { type Mark, marksOfRun } from '../../edit/marks';
+import type { Mark } from '../../edit/marks';
 import { language } from '../../words';
 import type { Around } from '../../world/around';
 import { Trail } from '../../world/trail';
@@ -31,6 +31,8 @@ export class Script {
   name = $state('');
   text = $state('');
   isSaved = $state(true);
+  /** How many were opened here. */
+  opened = $state(0);
   worldName = $state('');
   seed = $state(1);
   speed = $state(1);
@@ -109,6 +111,7 @@ export class Script {
     this.worldName = '';
     this.text = new TextDecoder().decode(bytes);
     this.name = name;
+    this.opened += 1;
     this.isSaved = true;
     this.studio.refusal = this.studio.notice = '';
     this.inputs = '';
@@ -261,14 +264,14 @@ export class Script {
     this.outcome = told.outcome;
     this.remarks = told.remarks;
     const wrong = told.outcome?.messages.filter(({ level }) => level === 'error') ?? [];
-    this.marks = wrong.flatMap(({ text, place }) => marksOfRun(this.name, text || place)).slice(0, 1);
+    this.marks = wrong.flatMap(({ text }) => markOf(text)).slice(0, 1);
   }
 
   #take(pictures: Picture[]): void {
     const lines: Line[] = [];
     for (const picture of pictures) {
-      const at = this.#pictures.length;
-      const isKept = at < PICTURES_MAX;
+      const isKept = this.#pictures.length < PICTURES_MAX;
+      const at = this.#pictures.length - (isKept ? 0 : 1);
       if (isKept) this.#pictures.push(picture);
       if (isKept && picture.scene) this.#scenes.push([at, picture.scene]);
       const { ms } = picture.state;
@@ -340,6 +343,12 @@ export class Script {
     this.state = picture.state;
     this.at = at;
   }
+}
+
+/** A failure at a line of the program, as the report has it: `3:1 NameError: ...`. */
+function markOf(text: string): Mark[] {
+  const found = /^(\d{1,9}):\d+ (.*)/.exec(text);
+  return found ? [{ line: Number(found[1]), text: found[2] ?? '' }] : [];
 }
 
 /** As the picture of the world takes it: nothing of it is moved by hand here. */
