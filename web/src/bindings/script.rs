@@ -82,7 +82,7 @@ impl Script {
     }
 
     /// What moves in the world, and where the program is.
-    #[wasm_bindgen(unchecked_return_type = "State")]
+    #[wasm_bindgen(unchecked_return_type = "ScriptState")]
     pub fn state(&self) -> JsValue {
         parsed(&self.0.state())
     }

@@ -10,7 +10,7 @@ import type {
   Locale,
   NameFacts,
   Scene,
-  State,
+  ScriptState,
 } from './facts';
 import { serve } from './remote';
 
@@ -132,7 +132,7 @@ const calls = {
     return { world };
   },
   /** A world with the robot at its start, or why nothing runs in it. */
-  preview(world: string): { scene: Scene; state: State } | string {
+  preview(world: string): { scene: Scene; state: ScriptState } | string {
     const begun = web.script('preview.js', world, { locale });
     if (!begun.ok) return said(begun.error.problems);
     const seen = { scene: begun.value.scene(), state: begun.value.state() };

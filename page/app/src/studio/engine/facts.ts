@@ -21,5 +21,6 @@ export type {
   Progress,
   PropertyFacts,
   Scene,
+  ScriptState,
   State,
 } from '../../../../../web/src/types';

@@ -23,6 +23,7 @@ import type {
   Progress,
   RunOptions,
   Scene,
+  ScriptState,
   ShowOptions,
   State,
 } from '../../../../../web/src/types';
@@ -64,7 +65,7 @@ export interface Script {
   ask(word: string, said: string, ticks: number): string;
   goOn(ticks: number): string;
   scene(): Scene;
-  state(): State;
+  state(): ScriptState;
   way(from: number): Float64Array;
   news(): News;
   remarks(): string[];

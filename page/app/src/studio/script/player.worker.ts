@@ -8,7 +8,7 @@ import base from 'robot-script:base';
 import codes from 'robot-script:codes';
 import robotScript from 'robot-script:robot';
 import talk from 'robot-script:talk';
-import type { Judged, Locale, Message, Scene, State } from '../engine/facts';
+import type { Judged, Locale, Message, Scene, ScriptState } from '../engine/facts';
 import { robot } from './brick';
 import { told } from './failure';
 import { Link, Over } from './link';
@@ -31,7 +31,7 @@ export interface Beginning {
 
 /** One moment of the run. */
 export interface Picture {
-  state: State;
+  state: ScriptState;
   /** Only if what stands still has changed. */
   scene: Scene | undefined;
   messages: Message[];

@@ -8,7 +8,7 @@ import { language } from '../../words';
 import type { Around } from '../../world/around';
 import { Trail } from '../../world/trail';
 import type { Scene as WorldScene, WorldState } from '../../world/types';
-import type { Judged, Message, Scene, State } from '../engine/facts';
+import type { Judged, Message, Scene, ScriptState } from '../engine/facts';
 import { keep } from '../keep';
 import type { Studio } from '../studio.svelte';
 import { words as studioWords } from '../words';
@@ -49,7 +49,7 @@ export class Script {
   count = $state(0);
   at = $state(0);
   scene = $state.raw<WorldScene | undefined>(undefined);
-  state = $state.raw<State | undefined>(undefined);
+  state = $state.raw<ScriptState | undefined>(undefined);
   lines = $state.raw<Line[]>([]);
   readonly trail = new Trail();
   #world = '';
@@ -95,8 +95,7 @@ export class Script {
   /** The line of the program at the moment that is shown. */
   get line(): number | undefined {
     const [thread] = this.state?.threads ?? [];
-    const line = (thread as { line?: number } | undefined)?.line;
-    return this.count > 0 ? line : undefined;
+    return this.count > 0 ? thread?.line : undefined;
   }
 
   /** Opens a file; without a world, in that of what was open. */
@@ -356,7 +355,7 @@ function shown(scene: Scene): WorldScene {
   return { ...scene, locked: { world: true, robot: true }, fields: false, devices: [] };
 }
 
-function stateOf({ world }: State): WorldState {
+function stateOf({ world }: ScriptState): WorldState {
   const { t, robots, things } = world;
   return { t, robots, things, paused: false, speed: 1, led: '', said: '', faults: {} };
 }
