@@ -1,4 +1,4 @@
-//! Programs with text whose questions come from outside, asked by this test in place of an engine.
+//! Programs with text whose questions come from outside, asked by this test instead of an engine.
 
 use serde_json::Value;
 use web::failure::Failure;

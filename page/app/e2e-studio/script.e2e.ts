@@ -125,7 +125,7 @@ test('a program reaches nothing but its robot', async () => {
 const HOSTILE: [name: string, text: string, seen: RegExp][] = [
   ['endless.js', 'while (true) {}', /computed for 10 s/],
   ['deep.js', 'function f() { return f() + 1; }\nf();', /RangeError: Maximum call stack/],
-  ['asks.js', 'while (true) brick.sensor(A1);', /stopped after 600 s/],
+  ['asks.js', 'while (true) brick.battery().readVoltage();', /stopped after 600 s/],
   ['stubborn.js', 'while (true) { try { script.wait(100000); } catch (e) {} }', /stopped after 600 s/],
   [
     'loud.js',

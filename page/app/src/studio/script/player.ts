@@ -6,12 +6,12 @@
 import { ENGINE_MS_MAX, SILENT_MS_MAX } from '../../limits';
 import { languageOf } from './names';
 import playerAddress from './player.worker.ts?worker&url';
-import type { Beginning, Told } from './player.worker';
+import type { Beginning, PlayerNews } from './player.worker';
 
 /** Who hears of a run. */
 export interface Listener {
   /** Everything but `ready`. */
-  told(told: Told): void;
+  told(told: PlayerNews): void;
   /** It was ended because it was silent: before the engine had come, or after. */
   silent(hadBegun: boolean): void;
   broken(why: string): void;
@@ -60,7 +60,7 @@ export class Player {
     const address = JSON.stringify(new URL(playerAddress, location.href).href);
     const failed = `(why)=>postMessage({kind:'refused',why:String(why)})`;
     this.#worker = workerOf(`${program}import(${address}).catch(${failed});`);
-    this.#worker.addEventListener('message', ({ data }: MessageEvent<Told>) => {
+    this.#worker.addEventListener('message', ({ data }: MessageEvent<PlayerNews>) => {
       if (this.#isGone) return;
       if (data.kind === 'ready') this.#worker?.postMessage({ ...beginning, broken } satisfies Beginning);
       else this.listener.told(data);

@@ -39,7 +39,7 @@ export interface Picture {
 }
 
 /** What the page is told. */
-export type Told =
+export type PlayerNews =
   | { kind: 'ready' }
   | { kind: 'refused'; why: string }
   | { kind: 'begun' }
@@ -55,7 +55,7 @@ const CALLS = 50;
 /** Until a browser tells of a promise that has failed. */
 const LOST_MS = 20;
 
-const post = postMessage.bind(globalThis) as (told: Told) => void;
+const post = postMessage.bind(globalThis) as (told: PlayerNews) => void;
 const clock = performance.now.bind(performance);
 const later = setTimeout.bind(globalThis);
 const program = (globalThis as { trikProgram?: () => void }).trikProgram;

@@ -14,7 +14,7 @@ import type { Studio } from '../studio.svelte';
 import { words as studioWords } from '../words';
 import { type ScriptLanguage, languageOf } from './names';
 import { Player } from './player';
-import type { Picture, Told } from './player.worker';
+import type { Picture, PlayerNews } from './player.worker';
 import { words } from './words';
 
 const PICTURE_MS = 20;
@@ -254,7 +254,7 @@ export class Script {
     this.refusal = why;
   }
 
-  #told(told: Told): void {
+  #told(told: PlayerNews): void {
     if (told.kind === 'refused') this.#stop(words.notRun(told.why));
     if (told.kind === 'begun') this.isLoading = false;
     if (told.kind === 'pictures') this.#take(told.pictures);
