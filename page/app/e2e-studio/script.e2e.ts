@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, eventually } from '../e2e/robot.js';
+import { Look, barriers, eventually } from '../e2e/robot.js';
 import { Site } from './site';
 
 let look: Look;
@@ -71,6 +71,7 @@ test('a program in JavaScript solves a task, and can be gone through backwards',
   await run(page, 'drive.js', DRIVE, WORLD);
   await verdict(page).filter({ hasText: 'The task is done' }).waitFor();
   await page.getByText('on my way [1, 2]').waitFor();
+  expect(await barriers(page)).toEqual([]);
   const moment = page.getByLabel('Moment');
   const last = Number(await moment.getAttribute('max'));
   expect(last).toBeGreaterThan(20);
