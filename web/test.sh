@@ -39,6 +39,13 @@ else
 fi
 node web/test/judge.mjs "$package" "$trik" "${places[@]}"
 
+# What the page has beside the package: its own side of programs with text, and Python.
+if [ -d page/app/node_modules/typescript ] && [ -d page/app/node_modules/pyodide ]; then
+    node web/test/script.mjs "$package" "$trik" page/app "$made/ours"
+else
+    skip script.mjs "no modules in page/app"
+fi
+
 hostile=("$made"/ours/projects/a_arith.qrs "$made"/ours/projects/c_attr_three.qrs)
 if [ -d "$data" ]; then
     hostile+=("$data"/grading/solution_full.qrs "$data"/examples/10._AlongTheBox.qrs "$data"/structure/testsComplex.qrs)

@@ -5,6 +5,7 @@ import { resolve } from 'node:path';
 import { defineConfig } from 'vite';
 import { licences } from './licences.js';
 import { offline } from './offline.js';
+import { robotScripts } from './robot-scripts.js';
 
 const built = process.env.TRIK_STUDIO_PACKAGE ?? resolve(import.meta.dirname, '../../target/web/package');
 
@@ -20,9 +21,9 @@ function index() {
 
 export default defineConfig({
   base: './',
-  plugins: [svelte(), licences(), offline('public'), index()],
+  plugins: [svelte(), robotScripts(), licences(), offline('public'), index()],
   resolve: { alias: { 'trik-studio-web': resolve(built, 'studio.js') } },
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [robotScripts()] },
   build: {
     target: 'es2023',
     assetsInlineLimit: 0,

@@ -23,7 +23,7 @@ pub const HEAD: &str = "<meta charset=\"utf-8\" />";
 /// Which robot has given the page: the one at the root of the same address.
 const ROBOT: &str = "<meta name=\"trik-robot\" content=\"/\" />";
 /// What it may load: its own files, and WebAssembly. Workers have the policy of their own file, so all files have it.
-const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; \
+const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src 'self'; \
      img-src 'self' data: blob:; connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; \
      frame-ancestors 'none'";
 
@@ -160,12 +160,13 @@ fn piece(mut file: File) -> Option<io::Result<(Bytes, File)>> {
 fn kind(name: &str) -> &'static str {
     match name.rsplit('.').next().unwrap_or_default() {
         "html" => "text/html; charset=utf-8",
-        "js" => "text/javascript; charset=utf-8",
+        "js" | "mjs" => "text/javascript; charset=utf-8",
         "css" => "text/css; charset=utf-8",
         "wasm" => "application/wasm",
         "svg" => "image/svg+xml",
         "txt" => "text/plain; charset=utf-8",
         "webmanifest" => "application/manifest+json",
+        "json" => "application/json",
         _ => "application/octet-stream",
     }
 }

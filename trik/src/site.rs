@@ -45,6 +45,17 @@ pub(crate) struct SiteArgs {
 const TASK: &str = "task.qrs";
 /// Licences of what is in the page: not kept by browsers, and always there.
 const LICENCES: &str = "licences.txt";
+/// The engine of programs in Python, which `web/site.sh --python` puts there: browsers do not keep it. The first one says whether
+/// a studio has it.
+const PYTHON: [&str; 7] = [
+    "python/pyodide.mjs",
+    "python/pyodide.asm.mjs",
+    "python/pyodide.asm.wasm",
+    "python/python_stdlib.zip",
+    "python/pyodide-lock.json",
+    "python/package.json",
+    "python/README.md",
+];
 /// How the list of files begins in the worker; `page/app/offline.js` writes it.
 const LIST: &str = "const FILES = ";
 /// How the name of what the browser keeps ends.
@@ -66,7 +77,10 @@ pub(crate) fn run(args: &SiteArgs) -> Result<u8, Refusal> {
     let names =
         names(&worker).ok_or_else(|| refusal(words::broken_studio(&named(&studio), WORKER)))?;
     let mut files = Vec::new();
-    for name in names.iter().map(String::as_str).chain([LICENCES]) {
+    let has_python = studio.join(PYTHON[0]).is_file();
+    let python = if has_python { &PYTHON[..] } else { &[] };
+    let others = [LICENCES].into_iter().chain(python.iter().copied());
+    for name in names.iter().map(String::as_str).chain(others) {
         files.push((name.to_owned(), read(name)?));
     }
     files.push((WORKER.to_owned(), worker.into_bytes()));

@@ -1,6 +1,6 @@
 //! JavaScript: QuickJS, one engine for each thread of a program, and the robot as its objects.
 //!
-//! Owns what TRIK programs know: the names, the old dialect's texts of errors, the rule about `main`. The scripts in
+//! Owns what TRIK programs know: the names, the old dialect's texts of errors. The scripts in
 //! `trikd/js` are the objects; `natives` is what they stand on. `session` is the process, `machine` one engine, `debug` what
 //! a debugger can do with them.
 
@@ -14,7 +14,6 @@ pub mod outside;
 pub mod platform;
 pub mod session;
 pub mod shared;
-pub mod source;
 pub mod wording;
 
 use crate::brick::Brick;

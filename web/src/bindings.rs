@@ -21,6 +21,7 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
 mod draft;
+mod script;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = include_str!("types.d.ts");
@@ -257,7 +258,7 @@ impl Run {
     /// What stands still in the world. It changes with what markers draw and rules move.
     #[wasm_bindgen(unchecked_return_type = "Scene")]
     pub fn scene(&self) -> JsValue {
-        parsed(&self.0.scene())
+        parsed(&self.0.course().scene())
     }
 
     /// What moves in the world, and what the program does.
@@ -269,13 +270,13 @@ impl Run {
     /// Where the robot was after each tick from this one on, four numbers for each: milliseconds of model time, pixels to the
     /// right and down, degrees clockwise. At most 100000 ticks in one call.
     pub fn trail(&self, from: u32) -> Float64Array {
-        Float64Array::from(self.0.trail(from as usize))
+        Float64Array::from(self.0.course().trail(from as usize))
     }
 
     /// Where the middle of the robot was after each tick from this one on, two numbers for each: metres as those of `state`. At
     /// most 200000 ticks in one call.
     pub fn way(&self, from: u32) -> Float64Array {
-        Float64Array::from(self.0.way(from as usize))
+        Float64Array::from(self.0.course().way(from as usize))
     }
 
     /// What rules and program have said since the last call.
@@ -286,7 +287,7 @@ impl Run {
 
     /// The display of the robot, as a PNG file.
     pub fn display(&self) -> Uint8Array {
-        Uint8Array::from(&self.0.display()[..])
+        Uint8Array::from(&self.0.course().display()[..])
     }
 
     /// Gives the debugger an order, as `trik debug` sends it; the answer is what it tells.
@@ -298,7 +299,7 @@ impl Run {
         let order = text(order, "an order", limits::ORDER_BYTES_MAX);
         match order.and_then(|order| self.0.order(&order)) {
             Ok(told) => good(&parsed(&told)),
-            Err(why) => bad(&why, &self.0.project().name, None, self.0.locale()),
+            Err(why) => bad(&why, &self.0.project().name, None, self.0.course().locale()),
         }
     }
 
@@ -310,7 +311,7 @@ impl Run {
             Ok(told) => good(&told.into()),
             Err(why) => {
                 let findings = Some(project.0.findings());
-                bad(&why, &project.0.name, findings, self.0.locale())
+                bad(&why, &project.0.name, findings, self.0.course().locale())
             }
         }
     }

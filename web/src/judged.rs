@@ -15,6 +15,7 @@ use sim::judge::{self, Clock, Dataflow, Diagram, Outcome, Program, Settings, Tas
 use std::rc::Rc;
 use std::time::Duration;
 use studio::explain::explanation;
+use studio::findings::Findings;
 use studio::program::Program as Opened;
 use studio::verdict::Verdict;
 
@@ -136,6 +137,22 @@ pub fn world(settings: &Settings) -> World {
     }
 }
 
+/// World and rules, with what is strange in them.
+///
+/// # Errors
+/// Either has mistakes.
+pub fn task(texts: Texts<'_>, locale: Locale) -> Result<(Task, Vec<Problem>), Box<Refused>> {
+    Task::read(texts).map_err(|problems| {
+        let is_error = |one: &&Problem| one.severity == Severity::Error;
+        let errors = problems.iter().filter(is_error);
+        Box::new(Refused {
+            lines: errors.map(|one| judge::report::text(one, locale)).collect(),
+            failure: Failure::World(problems),
+            verdict: Verdict::NotRun,
+        })
+    })
+}
+
 /// Puts a project into its world.
 ///
 /// # Errors
@@ -158,15 +175,7 @@ pub fn stage(project: &Project, wish: &Wish) -> Result<Staged, Box<Refused>> {
             templates: save.map(|save| &save.templates),
         },
     };
-    let (mut task, strange) = Task::read(texts).map_err(|problems| {
-        let is_error = |one: &&Problem| one.severity == Severity::Error;
-        let errors = problems.iter().filter(is_error);
-        Refused {
-            lines: errors.map(|one| judge::report::text(one, locale)).collect(),
-            failure: Failure::World(problems),
-            verdict: Verdict::NotRun,
-        }
-    })?;
+    let (mut task, strange) = task(texts, locale)?;
     let is_debugging = wish.is_debugging;
     let program = match &project.program {
         Opened::Diagram(opened) => {
@@ -211,7 +220,13 @@ pub fn judge(project: &Project, options: &str, clock: Clock) -> Answer<Value> {
             Ok(mut staged) => {
                 let program = staged.program.program();
                 let outcome = judge::judge(&staged.task, program, &wish.settings);
-                told(project, &staged.strange, &outcome, &wish.settings)
+                told(
+                    &project.name,
+                    project.findings(),
+                    &staged.strange,
+                    &outcome,
+                    &wish.settings,
+                )
             }
             Err(refused) => unrun(project, &refused, locale),
         }
@@ -219,9 +234,10 @@ pub fn judge(project: &Project, options: &str, clock: Clock) -> Answer<Value> {
     (judged, locale)
 }
 
-/// What came out of a run, as JSON.
+/// What came out of a run, as JSON. Findings know the places in the file of this name.
 pub fn told(
-    project: &Project,
+    name: &str,
+    findings: Findings<'_>,
     strange: &[Problem],
     outcome: &Outcome,
     settings: &Settings,
@@ -241,7 +257,7 @@ pub fn told(
         "messages": entries.take(limits::MESSAGES_MAX).map(message).collect::<Vec<_>>(),
         "more": more,
         "printed": outcome.printed,
-        "strange": project.findings().json(&project.name, strange, locale),
+        "strange": findings.json(name, strange, locale),
         "report": judge::report::write(&outcome.entries),
         "explanation": explanation,
         "trajectory": trajectory,

@@ -7,6 +7,7 @@
 #[cfg(target_family = "wasm")]
 mod bindings;
 pub mod change;
+pub mod course;
 pub mod draft;
 pub mod failure;
 pub mod judged;
@@ -15,4 +16,5 @@ pub mod options;
 pub mod palette;
 pub mod project;
 pub mod run;
+pub mod script;
 pub mod words;

@@ -400,6 +400,18 @@ export interface State {
   world: { t: number; robots: Placed[]; things: Place[] };
 }
 
+/** Where a thread of a program with text is: the line at which it waited, or asked its robot, last. */
+export interface Stand {
+  thread: string;
+  file: string;
+  line: number;
+}
+
+/** The same of a program with text. */
+export interface ScriptState extends Omit<State, 'threads'> {
+  threads: Stand[];
+}
+
 /** What a debugger answers: `done`, or `why` not. The rest is what `docs/user/debug.md` tells of orders. */
 export type DebugAnswer = { to: number; done: true; [name: string]: unknown } | { to: number; done: false; why: string };
 

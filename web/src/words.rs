@@ -168,3 +168,11 @@ pub(crate) fn other_language() -> Words {
         "диаграмма не может заменить потоковую программу, и наоборот",
     )
 }
+
+/// A program with text in none of the languages that have an engine in a browser.
+pub(crate) fn no_script() -> Words {
+    Words::new(
+        "programs with text are files NAME.py and NAME.js",
+        "программы в виде текста - это файлы ИМЯ.py и ИМЯ.js",
+    )
+}

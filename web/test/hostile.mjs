@@ -191,6 +191,7 @@ for (const one of strange) {
     project.judge(one === null ? { modelSeconds: 1, x: 1 } : one),
     studio.edit(one, good), studio.edit(first, one), studio.blank(one), studio.blank('a', { kit: one ?? 1 }), draft.apply(one),
     draft.apply({ do: one }), draft.apply({ do: 'add', diagram: one, blocks: one, links: one }),
+    studio.script(one, one, one), studio.script('p.js', '', one), studio.script('p.py', one), studio.runnable(one, one),
     draft.apply({ do: 'move', places: [{ id: one, at: one }] }), draft.copy(one), draft.project(one), studio.palette(one),
   ]) {
     assert.equal(typeof answer.ok, 'boolean');
@@ -213,6 +214,25 @@ for (const count of [-1, NaN, Infinity, 1e12, 0.5]) {
   run.trail(count);
 }
 run.free();
+// Questions that are none, in any order, answer something; the run goes on to its limit of model time.
+const asking = studio.script('p.js', '', { modelSeconds: 5 }).value;
+const words = ['read', 'write', 'has', 'names', 'event', 'wait', 'listen', 'drain', 'draw', 'mailbox', 'random', 'append', 'file', '',
+  'remove', 'input', 'at', 'gone', 'take', 'system', 'stream', 'print', 'nonsense'];
+const said = [...strange.filter((one) => typeof one !== 'symbol'), '', 'gamepad/text/device', 'motors/M1/value\n1e999', '../../etc',
+  '-1e308 1e308', 'x'.repeat(1 << 19), '\u0000\n\ud800', long];
+let asked = 0;
+for (let round = 0; asking.outcome() === undefined; round += 1) {
+  for (const word of [...words, ...strange, long]) {
+    const text = said[(asked + round) % said.length];
+    const told = asking.ask(word, text, asked % 3 === 0 ? -1 : 100);
+    assert.match(told, /^(ok|no):\d+:|^(later|over)$/);
+    if (told === 'later') asking.goOn(3);
+    asked += 1;
+  }
+}
+asking.state();
+assert.equal(asking.goOn(NaN), 'over');
+asking.free();
 project.free();
 assert.equal(draft.sheet(long), null);
 draft.free();

@@ -5,6 +5,8 @@ import {
   lint,
   open,
   palette,
+  runnable,
+  script,
   type Answer,
   type Change,
   type Finding,
@@ -45,6 +47,18 @@ export function everything(name: string, bytes: Uint8Array, field: string): [Jud
   run.free();
   project.free();
   return [over ?? judged, state, shown + text + String(findings.length + notes.length)];
+}
+
+export function asked(text: string, world: string): Judged | undefined {
+  const run = must(script('p.py', must(runnable('p.py', text)), { seed: 2 }));
+  let told: string = run.ask('event', '100', 2);
+  while (told === 'later') told = run.goOn(2);
+  const scene = run.scene();
+  console.log(world, scene.robots.length, run.state().threads[0]?.line, run.news().messages, run.remarks().join(), run.way(0).length);
+  run.end();
+  const over = run.outcome();
+  run.free();
+  return over;
 }
 
 // @ts-expect-error There is no such language.

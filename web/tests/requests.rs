@@ -114,17 +114,17 @@ fn a_run_tick_by_tick_comes_to_the_same_end_and_shows_what_happens() {
         assert_eq!(state["variables"]["a"], "5");
         assert_eq!(state["threads"][0]["kind"], "Timer", "{state}");
         assert!(state["world"]["robots"][0]["at"][0].as_f64().unwrap() > 0.0);
-        let scene: Value = serde_json::from_str(&run.scene()).unwrap();
+        let scene: Value = serde_json::from_str(&run.course().scene()).unwrap();
         assert_eq!(scene["robots"].as_array().unwrap().len(), 1);
         assert!(run.outcome().is_none());
         while run.tick(1) == "runs" {}
         assert_eq!(run.outcome().unwrap(), whole, "{options}");
         assert_eq!(run.news()["messages"], whole["messages"]);
         assert_eq!(run.news()["messages"], serde_json::json!([]));
-        let ticks = run.trail(0).len() / 4;
-        assert_eq!(run.trail(ticks - 1).len(), 4);
-        assert!(run.trail(usize::MAX).is_empty());
-        assert!(run.display().starts_with(b"\x89PNG"));
+        let ticks = run.course().trail(0).len() / 4;
+        assert_eq!(run.course().trail(ticks - 1).len(), 4);
+        assert!(run.course().trail(usize::MAX).is_empty());
+        assert!(run.course().display().starts_with(b"\x89PNG"));
     }
 }
 

@@ -18,6 +18,7 @@ pub mod generate;
 pub mod limits;
 pub mod lower;
 pub mod machine;
+pub mod mailbox;
 pub mod objects;
 pub mod ports;
 pub mod program;

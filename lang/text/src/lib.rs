@@ -1,5 +1,5 @@
 //! What the languages share: what is wrong with a text and where, in two languages, XML as a tree,
-//! the signs of markup, JSON, and pictures in SVG.
+//! the signs of markup, JSON, pictures in SVG, and the rule about `main` in JavaScript.
 //!
 //! Pure: bytes in, values and [`problem::Problem`]s out. Knows no language, no files, network, threads or clock.
 
@@ -7,6 +7,7 @@
 #![allow(clippy::result_large_err)]
 
 pub mod escape;
+pub mod javascript;
 pub mod json;
 pub mod limits;
 pub mod near;

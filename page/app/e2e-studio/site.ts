@@ -17,6 +17,7 @@ export const DATA = resolve(import.meta.dirname, '../../../../shared/data');
 const TYPES: Record<string, string> = {
   html: 'text/html; charset=utf-8',
   js: 'text/javascript',
+  mjs: 'text/javascript',
   css: 'text/css',
   wasm: 'application/wasm',
   svg: 'image/svg+xml',

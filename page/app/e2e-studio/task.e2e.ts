@@ -1,7 +1,7 @@
 // A page with a task, as `trik site --task` makes it.
 
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { afterAll, beforeAll, expect, test } from 'vitest';
@@ -64,5 +64,32 @@ test('the task is open, its world stays, and a program of a pupil is judged in i
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.locator('.verdict').getByText('The task is not done.').waitFor();
   expect(look.complaints).toEqual([]);
+  await page.context().close();
+});
+
+test('a program with text is judged in the world of the task', async () => {
+  const { open } = await library();
+  const line = open('line.qrs', new Uint8Array(readFileSync(join(ROOT, 'examples/diagrams/line.qrs'))));
+  if (!line.ok) throw new Error('no example');
+  const hasPython = existsSync(join(home, 'out/python/pyodide.mjs'));
+  expect(hasPython).toBe(existsSync(join(SITE, 'python/pyodide.mjs')));
+  const page = await look.open(site.url);
+  await page.getByRole('heading', { name: 'follow.qrs' }).waitFor();
+  for (const [language, name] of [
+    ['javascript', 'line.js'],
+    ...(hasPython ? ([['python', 'line.py']] as const) : []),
+  ] as const) {
+    const written = line.value.generate(language);
+    if (!written.ok) throw new Error(`nothing is written in ${language}`);
+    const buffer = Buffer.from(written.value.text);
+    await page.getByLabel('Open', { exact: true }).setInputFiles({ name, mimeType: 'text/plain', buffer });
+    await page.getByRole('heading', { name }).waitFor();
+    await page.getByText('World: that of the task').waitFor();
+    expect(await page.getByRole('button', { name: 'Load a world' }).count()).toBe(0);
+    await page.getByLabel('Speed').selectOption('fastest');
+    await page.getByRole('button', { name: 'Run', exact: true }).click();
+    await page.getByText('The task is done.').waitFor();
+  }
+  line.value.free();
   await page.context().close();
 });

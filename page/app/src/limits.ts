@@ -111,6 +111,13 @@ export const KEEP_AFTER_MS = 500;
 export const PASTE_SHIFT_PX = 25;
 /** Lines of what a run has said that are kept. */
 export const SAID_LINES_MAX = 500;
+/** A program with text that the studio opens. */
+export const SCRIPT_FILE_MB_MAX = 1;
+/** Pictures of a run of it, one for each 20 ms, that are kept: ten minutes. */
+export const PICTURES_MAX = 30_000;
+/** A program that asks its robot for nothing for so long is ended; its engine may take longer to come. */
+export const SILENT_MS_MAX = 10_000;
+export const ENGINE_MS_MAX = 120_000;
 /** Runs with other random numbers, one after the other on each core. */
 export const MANY_RUNS_MAX = 500;
 export const MANY_WORKERS_MAX = 8;

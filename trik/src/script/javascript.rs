@@ -3,25 +3,25 @@
 //! Owns who runs. One thread runs at a time, until it waits: first who was begun, killed or sent something, then who
 //! did that, then who is due, in the order in which they began to wait.
 
-use super::input::{GAMEPAD, KEYS};
-use super::lines::Lines;
-use super::refresh::Readings;
-use super::stage::{Ear, Here, Stage, Subscriptions, Wish};
-use super::{START_MS, problem};
+use super::stage::{Ear, Here, Stage, Subscriptions, Wish, record};
 use crate::error::Error;
 use generator::{Generator, Gn};
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
+use lang_text::javascript::with_call_of_main;
 use lang_text::problem::{Locale, Problem};
 use sim::judge::{Group, Program, Running};
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::{Arc, PoisonError};
-use trikd::js::events::Record;
+use studio::script::asked::START_MS;
+use studio::script::failure::problem;
+use studio::script::input::{GAMEPAD, KEYS, Record};
+use studio::script::lines::Lines;
+use studio::script::refresh::Readings;
 use trikd::js::machine::{self, Job, Kind};
 use trikd::js::shared::{MAIN, Shared, Slot, unbroken};
-use trikd::js::source::with_call_of_main;
 use trikd::limits::{JS_MESSAGES, JS_STACK_BYTES, JS_STACK_SPARE_BYTES};
 
 /// All that a thread does.
@@ -286,18 +286,19 @@ impl JavaScript {
         if listens(KEYS)
             && let Some(record) = input.keys(robot)
         {
-            self.note(KEYS, &record);
+            self.note(KEYS, record);
         }
         if listens(GAMEPAD) {
             for record in input.gamepad(robot) {
-                self.note(GAMEPAD, &record);
+                self.note(GAMEPAD, record);
             }
         }
     }
 
-    fn note(&self, path: &str, record: &Record) {
+    fn note(&self, path: &str, seen: Record) {
+        let record = record(seen);
         for thread in &self.threads {
-            thread.heard.borrow_mut().note(path, record);
+            thread.heard.borrow_mut().note(path, &record);
         }
     }
 

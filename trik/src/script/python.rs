@@ -1,19 +1,12 @@
 //! Python under a judge: a child process whose every question about the robot and time comes here.
 //!
-//! Owns the process, its time and its end. `virtual.py` is the other side: it runs one thread at a time and asks when all
-//! of them wait. What it may do on the computer is
-//! known to `sandbox`.
+//! Owns the process, its time and its end. `channel.py` and `virtual.py` are the other side, which runs one thread at a time and
+//! asks when all of them wait. What is answered is known to `studio::script`, and what it may do on the computer to `sandbox`.
 
-use super::input::{GAMEPAD, Input, KEYS};
-use super::lines::Lines;
-use super::refresh::Readings;
-use super::tree::Tree;
-use super::{START_MS, drawing, problem};
 use crate::error::Error;
-use crate::limits;
 use crate::sandbox::Sandbox;
 use frame::{Decoder, encode};
-use lang_diagram::brick::{Answer, Brick, Command, Question};
+use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::Status;
 use lang_text::problem::{Locale, Problem};
 use sim::judge::{Group, Program, Running};
@@ -24,27 +17,16 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
-use trikd::js::events::Record;
+use studio::limits::SCRIPT_FRAME_BYTES;
+use studio::script::asked::{Asked, Manner, START_MS, Turn};
+use studio::script::refresh::Readings;
 use trikd::program::python::MODULE;
-use trikd::protocol::program::FromProgram;
 
-const BOOT: &str = include_str!("virtual.py");
-/// What its first thread is called.
-const MAIN: &str = "main";
-
-/// A question that is answered in a later step.
-enum Pending {
-    /// At a time; infinity: never.
-    Wait(f64),
-    /// In the next step: the answer is known, if there is one.
-    Answer(Option<io::Result<String>>),
-    /// When a person has answered.
-    Input(String),
-}
-
+/// What it begins with: the way to the judge, and the module `trik` in model time.
+const BOOT: &str = concat!(include_str!("channel.py"), include_str!("virtual.py"));
 /// A Python program that is judged.
 pub struct Python {
-    name: String,
+    asked: Asked,
     file: PathBuf,
     text: String,
     seed: u32,
@@ -53,19 +35,11 @@ pub struct Python {
     child: Option<(Child, UnixStream)>,
     decoder: Decoder,
     until: Instant,
-    tree: Tree,
-    input: Input,
-    pending: Option<Pending>,
     began: Option<u32>,
-    now: u32,
-    hull: i32,
-    remarks: Vec<String>,
     readings: Readings,
-    errors: Vec<Problem>,
     ended: Option<u32>,
     is_out_of_time: bool,
-    /// At which lines threads are, if somebody looks on.
-    lines: Option<Lines>,
+    is_watched: bool,
 }
 
 impl Python {
@@ -85,40 +59,34 @@ impl Python {
         let absolute = std::path::absolute(file)
             .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
         Ok(Self {
-            name: name.into_owned(),
+            asked: Asked::new(&name, Manner::Python),
             file: absolute,
             text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned(),
             seed,
             longest,
             sandbox,
             child: None,
-            decoder: Decoder::new(limits::SCRIPT_FRAME_BYTES),
+            decoder: Decoder::new(SCRIPT_FRAME_BYTES),
             until: Instant::now(),
-            tree: Tree::default(),
-            input: Input::default(),
-            pending: None,
             began: None,
-            now: 0,
-            hull: 0,
-            remarks: Vec::new(),
             readings: Readings::default(),
-            errors: Vec::new(),
             ended: None,
             is_out_of_time: false,
-            lines: None,
+            is_watched: false,
         })
     }
 
     /// The same, and it is kept at which lines its threads wait and ask.
     #[must_use]
     pub fn watched(mut self) -> Self {
-        self.lines = Some(Lines::default());
+        self.is_watched = true;
+        self.asked.watch();
         self
     }
 
     /// What a person may want to know of the run: standard error, and things that the simulated robot does not have.
     pub fn remarks(&self) -> &[String] {
-        &self.remarks
+        self.asked.remarks()
     }
 
     fn start(&mut self) -> io::Result<()> {
@@ -138,7 +106,7 @@ impl Python {
         let mut channel = ours;
         channel.set_write_timeout(Some(self.longest))?;
         let program = format!("{}\n{}", self.file.display(), self.text);
-        let watched = if self.lines.is_some() { "1" } else { "0" };
+        let watched = if self.is_watched { "1" } else { "0" };
         let sent = [MODULE, &program, &self.seed.to_string(), watched]
             .iter()
             .try_for_each(|text| channel.write_all(&encode(text.as_bytes())));
@@ -154,7 +122,7 @@ impl Python {
                 Ok(None) => {}
                 Err(violation) => {
                     let told = violation.to_string();
-                    self.fail(&told);
+                    self.asked.fail(&told);
                     return None;
                 }
             }
@@ -176,7 +144,7 @@ impl Python {
                 {
                     self.is_out_of_time = true;
                     let seconds = self.longest.as_secs_f64();
-                    self.fail(&format!(
+                    self.asked.fail(&format!(
                         "the program has taken {seconds} s of real time and does not wait"
                     ));
                     return None;
@@ -186,15 +154,9 @@ impl Python {
         }
     }
 
-    fn fail(&mut self, text: &str) {
-        if self.errors.is_empty() {
-            self.errors.push(problem(&self.name, text));
-        }
-    }
-
     /// Answers the question that is open.
     fn answer(&mut self, answer: io::Result<String>) {
-        let now = self.now;
+        let now = self.asked.now();
         let text = match answer {
             Ok(text) => format!("ok:{now}:{text}"),
             Err(error) => {
@@ -214,175 +176,9 @@ impl Python {
         }
     }
 
-    /// Answers what was asked before, if it is time; false: not yet.
-    fn go_on(&mut self, robot: &mut dyn Brick) -> bool {
-        match self.pending.take() {
-            None => true,
-            Some(Pending::Wait(due)) if due > f64::from(self.now) => {
-                self.pending = Some(Pending::Wait(due));
-                false
-            }
-            Some(Pending::Wait(_)) => {
-                self.answer(Ok(String::new()));
-                true
-            }
-            Some(Pending::Answer(answer)) => {
-                if let Some(answer) = answer {
-                    self.answer(answer);
-                }
-                true
-            }
-            Some(Pending::Input(prompt)) => {
-                let question = Question {
-                    variable: "",
-                    prompt: &prompt,
-                    default: "",
-                };
-                match robot.ask(question) {
-                    Answer::Waiting => {
-                        self.pending = Some(Pending::Input(prompt));
-                        return false;
-                    }
-                    Answer::Text(text) => self.answer(Ok(text)),
-                    Answer::Cancelled => self.answer(Err(io::Error::other("cancelled"))),
-                }
-                true
-            }
-        }
-    }
-
-    /// What every program says to its runner; only a question to the mailbox has an answer.
-    fn hear_message(
-        &mut self,
-        message: FromProgram<'_>,
-        robot: &mut dyn Brick,
-    ) -> Option<io::Result<String>> {
-        match message {
-            FromProgram::Print(text) => {
-                let text = text.strip_suffix('\n').unwrap_or(text);
-                robot.command(Command::Console { text });
-            }
-            FromProgram::Error(text) => self.fail(text.trim_end()),
-            FromProgram::Info(text) => {
-                if self.remarks.len() < limits::SCRIPT_REMARKS {
-                    self.remarks.push(text.to_owned());
-                }
-            }
-            FromProgram::Mailbox(question) => return Some(Ok(self.mailbox(question, robot))),
-            // Nobody talks to a judged program, looks at its variables and blocks, or debugs it so.
-            FromProgram::Events
-            | FromProgram::Web(_)
-            | FromProgram::Watch { .. }
-            | FromProgram::Changed { .. }
-            | FromProgram::Debug { .. }
-            | FromProgram::DebugLog(_)
-            | FromProgram::Question { .. }
-            | FromProgram::Stopped(_) => {}
-        }
-        None
-    }
-
-    /// What can be answered at once; what has no answer gives None.
-    fn reply(
-        &mut self,
-        word: &str,
-        text: &str,
-        robot: &mut dyn Brick,
-    ) -> Option<io::Result<String>> {
-        let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
-        let flag = |value: bool| Ok(u8::from(value).to_string());
-        Some(match word {
-            "has" => flag(match text.trim_end_matches('/') {
-                "display/device" => true,
-                path => self.tree.has(robot, path),
-            }),
-            "names" => Ok(self.tree.names(robot, text).join(" ")),
-            "read" => self.tree.read(robot, text),
-            "write" => self.tree.write(robot, first, rest).map(|()| String::new()),
-            "stream" => Ok(self.stream(text, robot)),
-            "draw" => drawing::order(text, |command| robot.command(command))
-                .map(|()| String::new())
-                .map_err(io::Error::other),
-            "mail" => robot.mail().ok_or_else(|| io::ErrorKind::WouldBlock.into()),
-            "random" => {
-                let (low, high) = text.split_once(' ').unwrap_or((text, text));
-                let number = |text: &str| text.parse::<i64>().unwrap_or(0);
-                let whole = |number: i64| number.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
-                let (low, high) = (whole(number(low)), whole(number(high)));
-                Ok(robot.random(low, high.max(low)).to_string())
-            }
-            "system" => {
-                let (command, code) = (text, false);
-                robot.command(Command::System { command, code });
-                Ok("0".to_owned())
-            }
-            "append" => {
-                let done = self.tree.append(robot, first, rest.as_bytes());
-                done.map(|()| String::new())
-            }
-            "remove" => {
-                self.tree.remove(robot, text);
-                Ok(String::new())
-            }
-            "file" => self.read_file(text),
-            // It is only counted.
-            "look" => Ok(String::new()),
-            _ => Err(io::Error::other(format!(
-                "the judge knows no question '{word}'"
-            ))),
-        })
-    }
-
-    /// Where a thread is: its name, the line, and the file if that is not the program's, each in a line.
-    fn stand(&mut self, text: &str) {
-        let at_ms = self.now + START_MS;
-        let mut parts = text.split('\n');
-        let name = named(parts.next().unwrap_or_default());
-        if let (Some(lines), Some(line), Some(file)) = (&mut self.lines, parts.next(), parts.next())
-            && let Ok(line) = line.parse()
-        {
-            lines.stand(&name, &named(file), line, at_ms);
-        }
-    }
-
-    /// A thread has ended.
-    fn gone(&mut self, name: &str) {
-        if let Some(lines) = &mut self.lines {
-            lines.end(&named(name), self.now + START_MS);
-        }
-    }
-
-    fn read_file(&self, file: &str) -> io::Result<String> {
-        if let Some(bytes) = self.tree.written(file) {
-            return Ok(String::from_utf8_lossy(bytes).into_owned());
-        }
-        let folder = self.file.parent().unwrap_or(Path::new("/"));
-        super::beside(folder, file).map_err(io::Error::other)
-    }
-
-    fn stream(&mut self, path: &str, robot: &mut dyn Brick) -> String {
-        let records = match path {
-            KEYS => self.input.keys(robot).into_iter().collect(),
-            GAMEPAD => self.input.gamepad(robot),
-            _ => Vec::new(),
-        };
-        let texts = records.into_iter().map(|record| match record {
-            Record::Numbers(numbers) => {
-                let words: Vec<_> = numbers.iter().map(ToString::to_string).collect();
-                words.join(" ")
-            }
-            Record::Line(line) => line + "\n",
-        });
-        texts.collect()
-    }
-
-    fn mailbox(&mut self, words: &str, robot: &mut dyn Brick) -> String {
-        super::mailbox(words, &mut self.hull, |command| robot.command(command))
-    }
-
     /// The program is over, by itself or not.
     fn end(&mut self, robot: &mut dyn Brick) {
-        self.ended = Some(self.now);
+        self.ended = Some(self.asked.now());
         self.kill();
         robot.command(Command::Rest);
     }
@@ -405,78 +201,32 @@ impl Python {
     fn status(&self) -> Status {
         self.ended.map_or(Status::Running, |at| Status::Ended {
             at,
-            with_errors: !self.errors.is_empty(),
+            with_errors: !self.asked.errors().is_empty(),
         })
     }
 
     /// Answers questions until one has to wait for a later step; false: there will be no more.
-    fn serve(&mut self, robot: &mut dyn Brick) -> bool {
-        let mut calls = 0;
-        if !self.go_on(robot) {
-            return true;
-        }
+    fn serve(&mut self, now: u32, robot: &mut dyn Brick) -> bool {
+        let folder = self.file.parent().unwrap_or(Path::new("/")).to_owned();
+        let files = |file: &str| super::beside(&folder, file).map_err(io::Error::other);
+        let mut turn = self.asked.begin(now, robot, &files);
         loop {
+            match turn {
+                Turn::Answer(answer) => self.answer(answer),
+                Turn::Listen => {}
+                Turn::Wait => return true,
+                Turn::End => return false,
+            }
             let Some(frame) = self.hear() else {
-                self.fail(
+                self.asked.fail(
                     "the program has broken off: is python3 whole, and was it ended by somebody?",
                 );
                 return false;
             };
             let (word, text) = frame.split_once(':').unwrap_or((&frame, ""));
-            match word {
-                // They wait for no answer and cost nothing: a watched run is the same run.
-                "at" => {
-                    self.stand(text);
-                    continue;
-                }
-                "gone" => {
-                    self.gone(text);
-                    continue;
-                }
-                "end" => {
-                    self.gone(MAIN);
-                    if text != "0" {
-                        self.fail("the program has ended itself with an error");
-                    }
-                    return false;
-                }
-                "wait" => {
-                    let due = text.parse().unwrap_or(f64::INFINITY);
-                    self.pending = Some(Pending::Wait(due));
-                    if !self.go_on(robot) {
-                        return true;
-                    }
-                    continue;
-                }
-                "input" => {
-                    self.pending = Some(Pending::Input(text.to_owned()));
-                    if !self.go_on(robot) {
-                        return true;
-                    }
-                    continue;
-                }
-                "look" => calls += limits::SCRIPT_LOOK_CALLS,
-                _ => calls += 1,
-            }
-            let answer = match FromProgram::parse(&frame) {
-                Some(message) => self.hear_message(message, robot),
-                None => self.reply(word, text, robot),
-            };
-            if calls > limits::SCRIPT_CALLS || self.tree.has_cleared(self.now) {
-                // A program that asks and asks has used up its tick.
-                self.pending = Some(Pending::Answer(answer));
-                return true;
-            }
-            if let Some(answer) = answer {
-                self.answer(answer);
-            }
+            turn = self.asked.ask(word, text, robot, &files);
         }
     }
-}
-
-/// The name of a thread or a file, as far as it is kept.
-fn named(name: &str) -> String {
-    name.chars().take(limits::SCRIPT_NAME_CHARS).collect()
 }
 
 impl Program for Python {
@@ -488,18 +238,17 @@ impl Program for Python {
         let Some(now) = now_ms.checked_sub(began) else {
             return Status::Running;
         };
-        self.now = now;
         if self.child.is_none()
             && let Err(error) = self.start()
         {
-            self.fail(&format!(
+            self.asked.fail(&format!(
                 "python3 cannot be started: {error}: is it installed?"
             ));
             self.end(robot);
             return self.status();
         }
         let mut readings = std::mem::take(&mut self.readings);
-        if !self.serve(&mut readings.of(robot, now + START_MS)) {
+        if !self.serve(now, &mut readings.of(robot, now + START_MS)) {
             self.end(robot);
         }
         self.readings = readings;
@@ -513,16 +262,16 @@ impl Program for Python {
     }
 
     fn errors(&self) -> &[Problem] {
-        &self.errors
+        self.asked.errors()
     }
 
     fn running(&self) -> Vec<Running> {
-        let lines = self.lines.as_ref();
-        lines.map_or_else(Vec::new, |lines| lines.running(&self.name))
+        let lines = self.asked.lines();
+        lines.map_or_else(Vec::new, |lines| lines.running(self.asked.name()))
     }
 
     fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
-        if let Some(lines) = &self.lines {
+        if let Some(lines) = self.asked.lines() {
             lines.describe(locale, tell);
         }
     }

@@ -4,12 +4,8 @@
 //! deep, and go on in a later step. A program that asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
 //! engine has looked up a few times (some 10 000 turns of a loop), is charged one tick.
 
-use super::START_MS;
-use super::input::Input;
-use super::lines::Lines;
-use super::tree::Tree;
-use super::{beside, drawing, mailbox};
-use crate::limits;
+use super::beside;
+use crate::limits::SCRIPT_PRINT_BYTES;
 use lang_diagram::brick::{Brick, Command};
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, VecDeque};
@@ -17,6 +13,12 @@ use std::fmt;
 use std::io;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
+use studio::limits;
+use studio::script::asked::START_MS;
+use studio::script::input::{GAMEPAD, Input, KEYS, Record as Seen};
+use studio::script::lines::Lines;
+use studio::script::tree::Tree;
+use studio::script::{drawing, post};
 use trikd::display::Unshown;
 use trikd::engine::NoThread;
 use trikd::js::events::Record;
@@ -135,7 +137,7 @@ impl Ear {
 impl Output for Ear {
     fn print(&self, text: &str) -> io::Result<()> {
         self.with(|said| {
-            if said.bytes + text.len() <= limits::SCRIPT_PRINT_BYTES {
+            if said.bytes + text.len() <= SCRIPT_PRINT_BYTES {
                 said.bytes += text.len();
                 said.printed.push(text.to_owned());
             }
@@ -183,6 +185,14 @@ impl Subscriptions {
             }
             self.records.push_back((path.to_owned(), record.clone()));
         }
+    }
+}
+
+/// What keys or gamepad have brought, as an engine hears it.
+pub fn record(seen: Seen) -> Record {
+    match seen {
+        Seen::Numbers(numbers) => Record::Numbers(numbers),
+        Seen::Line(line) => Record::Line(line),
     }
 }
 
@@ -292,7 +302,7 @@ impl Platform for Here {
     }
 
     fn listen(&self, _brick: &trikd::brick::Brick, path: &str, _numbers: usize) -> io::Result<()> {
-        if ![super::input::KEYS, super::input::GAMEPAD].contains(&path) {
+        if ![KEYS, GAMEPAD].contains(&path) {
             return Err(io::ErrorKind::NotFound.into());
         }
         self.heard.borrow_mut().paths.insert(path.to_owned());
@@ -346,7 +356,7 @@ impl Platform for Here {
         let stage = self.stage.clone();
         let answer = self.stage.with(move |brick| {
             let mut hull = stage.hull.get();
-            let answer = mailbox(&words, &mut hull, |command| brick.command(command));
+            let answer = post::answer(&words, &mut hull, |command| brick.command(command));
             stage.hull.set(hull);
             answer
         });

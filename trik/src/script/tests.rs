@@ -8,6 +8,7 @@ use lang_diagram::stand_in::{Placing, StandIn};
 use sim::judge::Program;
 use std::path::Path;
 use std::time::Duration;
+use studio::script::asked::START_MS;
 
 mod official;
 
@@ -381,7 +382,7 @@ fn what_the_child_process_says_is_what_is_heard_here() {
         .filter_map(|rest| rest.split('\'').next())
         .collect();
     assert!(words.len() > 15, "{words:?}");
-    let here = include_str!("python.rs");
+    let here = include_str!("../../../studio/src/script/asked.rs");
     for word in words {
         let is_heard = FROM_PROGRAM.contains(&word) || here.contains(&format!("\"{word}\" =>"));
         assert!(is_heard, "{word}");

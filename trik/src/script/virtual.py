@@ -1,14 +1,14 @@
 """Python under a judge: the module `trik` in model time, one thread at a time.
 
-Runs in a process of its own. Whatever concerns the robot or time is a question to the judge; time passes only while all
-threads wait, or for a program that asks or computes for long.
+Begins behind a text that has made `channel` and `setting`: of a process of its own, or of a browser. Whatever concerns the
+robot or time is a question to the judge; time passes only while all threads wait, or for a program that asks or computes for
+long.
 """
 
 import _thread
 import itertools
 import os
 import random
-import socket
 import sys
 import threading
 import time
@@ -17,52 +17,25 @@ import types
 EPOCH = 1767225600.0
 # Steps of the interpreter for one look at the judge: some 5000 lines.
 LOOK_STEPS = 20000
+# From Python 3.12 on a loop of one line has lines, and steps are not told to who asks for them only when a call begins.
+HAS_LINES = sys.version_info >= (3, 12)
+STEPS_OF_EVENT = 4 if HAS_LINES else 1
 FOREVER = float('inf')
 
-# The channel is standard input; nobody else shall read it or print into it.
-link_fd = os.dup(0)
-null = os.open(os.devnull, os.O_RDWR)
-for number in (0, 1, 2):
-    os.dup2(null, number)
-os.close(null)
-os.register_at_fork(after_in_child=lambda: os.close(link_fd))
 now = 0.0
 
 
 class Link:
-    """Frames to and from the judge."""
-
-    def __init__(self):
-        self.socket = socket.socket(fileno=link_fd)
-        self.buffer = b''
+    """Questions to the judge, through `channel`."""
 
     def send(self, word, text=''):
-        payload = (word + ':' + text).encode('utf-8', 'replace')
-        try:
-            self.socket.sendall(b'%d:%s' % (len(payload), payload))
-        except OSError:
-            os._exit(1)
-
-    def receive(self):
-        while True:
-            head, colon, rest = self.buffer.partition(b':')
-            if colon and len(rest) >= int(head):
-                frame, self.buffer = rest[:int(head)], rest[int(head):]
-                return frame.decode('utf-8', 'replace')
-            try:
-                piece = self.socket.recv(65536)
-            except OSError:
-                piece = b''
-            if not piece:
-                os._exit(1)
-            self.buffer += piece
+        channel.send(word, text)
 
     def ask(self, word, text=''):
         """The judge's answer; a failure is an OSError."""
         global now
         stand()
-        self.send(word, text)
-        kind, at, answer = self.receive().split(':', 2)
+        kind, at, answer = channel.ask(word, text).split(':', 2)
         now = float(at)
         if kind == 'ok':
             return answer
@@ -185,8 +158,13 @@ class Thread(threading.Thread):
         if len(tasks) >= 64:
             raise RuntimeError('a judged program has at most 64 threads at once')
         self.task = Task(self.daemon, str(self.name))
+        try:
+            # It waits at its gate.
+            _thread.start_new_thread(self._live, ())
+        except RuntimeError:
+            self.task = None
+            raise
         tasks.append(self.task)
-        _thread.start_new_thread(self._live, ())
         give_way()
 
     def _live(self):
@@ -230,10 +208,10 @@ def trace(frame, event, _):
     if event == 'call':
         if not frame.f_code.co_filename.startswith(folder):
             return None
-        # A loop of one line has no lines to count.
-        frame.f_trace_opcodes, frame.f_trace_lines = True, False
+        # A loop of one line has no lines to count in an older Python.
+        frame.f_trace_opcodes, frame.f_trace_lines = not HAS_LINES, HAS_LINES
         return trace
-    steps += 1
+    steps += STEPS_OF_EVENT
     if steps >= LOOK_STEPS:
         steps = 0
         link.ask('look')
@@ -402,10 +380,8 @@ def question(prompt=''):
 def main():
     import builtins
     global folder, own_file, watched
-    trik_text = link.receive()
-    path, _, program = link.receive().partition('\n')
-    random.seed(int(link.receive()))
-    is_watched = link.receive() == '1'
+    trik_text, path, program, seed, is_watched = setting()
+    random.seed(seed)
     os.urandom = lambda count: random.randbytes(count)
     folder, own_file = os.path.dirname(path) + os.sep, path
     clocks()
@@ -435,8 +411,7 @@ def main():
         code = 1
     sys.settrace(None)
     sys.stdout.flush()
-    link.send('end', str(code))
-    link.receive()
+    channel.end(str(code))
 
 
 folder = own_file = ''

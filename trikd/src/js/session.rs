@@ -8,12 +8,12 @@ use super::files::read_text;
 use super::machine::{Job, Kind};
 use super::outside::{Output, Outside};
 use super::shared::{Event, MAIN, Shared};
-use super::source;
 use crate::brick::Brick;
 use crate::engine::{Failure, Outcome, Start};
 use crate::host::Incoming;
 use crate::limits;
 use crate::protocol::program::ALL;
+use lang_text::javascript::with_call_of_main;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Out
     }
     let job = Job {
         name: MAIN.to_owned(),
-        text: source::with_call_of_main(text).into(),
+        text: with_call_of_main(text).into(),
         kind,
     };
     shared.start(job).map_err(Failure::Thread)?;

@@ -5,9 +5,8 @@
 //! payload travels in a frame ([`super::frame`]) on the program's standard input. Knows no sockets and no processes:
 //! `program` is the daemon's end, `host` the program's, and `trik.py` speaks the same words in Python.
 
-pub mod mailbox;
-
 pub use lang_diagram::machine::patch::WhenGone;
+pub use lang_diagram::mailbox;
 
 use lang_text::problem::Locale;
 

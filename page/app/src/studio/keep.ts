@@ -8,6 +8,8 @@ export interface Kept {
   bytes: Uint8Array;
   /** Somebody has it as a file, too. */
   isSaved: boolean;
+  /** The world of a program with text. */
+  world?: string;
 }
 
 /** What is kept of a tab. */
@@ -63,8 +65,9 @@ async function within<T>(
   }
 }
 
-export async function keep({ name, bytes, isSaved }: Kept): Promise<void> {
+export async function keep({ name, bytes, isSaved, world }: Kept): Promise<void> {
   const place: Place = { name, bytes, isSaved, page: location.pathname, at: Date.now() };
+  if (world !== undefined) place.world = world;
   await within('readwrite', (store) => store.put(place, tab)).catch(() => undefined);
 }
 

@@ -19,8 +19,9 @@ import { Remote } from './engine/remote';
 import { arranged } from './draw/arrange';
 import { guardOfNext } from './draw/guards';
 import { pieceOf } from './draw/piece';
-import { keep, kept } from './keep';
+import { type Kept, keep, kept } from './keep';
 import { PLAIN, type Point } from './run/point';
+import { isScript } from './script/names';
 import { fromLink, isLink } from './share';
 import { words } from './words';
 
@@ -73,6 +74,14 @@ export class Studio {
     this.#drafts = new Remote<DraftCalls>(worker);
     this.ready = new Promise((done) => (this.#begun = done));
   }
+
+  /** The Worker with the draft. */
+  get drafts(): Remote<DraftCalls> {
+    return this.#drafts;
+  }
+
+  /** A program with text that was left here. */
+  left: Kept | undefined;
 
   /** The name of its file. */
   name = $state('');
@@ -129,7 +138,9 @@ export class Studio {
     await this.#beginTask();
     const isLinked = isLink(hash) && (await this.openLink(hash));
     const left = isLinked ? undefined : await kept();
-    if (left) {
+    if (left && isScript(left.name)) {
+      this.left = left;
+    } else if (left) {
       const why = this.refusal;
       await this.open(left.name, left.bytes);
       this.notice = words.kept(left.name);

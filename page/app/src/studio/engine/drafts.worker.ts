@@ -1,7 +1,17 @@
 // The drawing in a Worker, so that the page never waits for it: one draft, changed and looked at.
 
 import init, * as web from 'trik-studio-web';
-import type { Change, DraftState, DrawnSheet, Finding, Language, Locale, NameFacts } from './facts';
+import type {
+  Change,
+  DraftState,
+  DrawnSheet,
+  Finding,
+  Language,
+  Locale,
+  NameFacts,
+  Scene,
+  ScriptState,
+} from './facts';
 import { serve } from './remote';
 
 /** What a page shows of a draft after each change. */
@@ -106,12 +116,33 @@ const calls = {
     return saved.ok ? saved.value : said(saved.error.problems);
   },
   /** The text of the world, if there is one. */
-  world: () => must().world(),
+  world: () => draft?.world(),
   /** What is wrong with a world; empty if it can be run in. */
   wrongWith(world: string): string {
     const found = web.lint('world.xml', new TextEncoder().encode(world), { locale });
     if (!found.ok) return said(found.error.problems);
     return said(found.value.filter(({ level }) => level === 'error').slice(0, 3));
+  },
+  /** That of a project in a file; what is no project says why. */
+  worldOf(name: string, bytes: Uint8Array): { world: string } | string {
+    const opened = web.edit(name, bytes, { locale });
+    if (!opened.ok) return said(opened.error.problems);
+    const world = opened.value.world() ?? '';
+    opened.value.free();
+    return { world };
+  },
+  /** A world with the robot at its start, or why nothing runs in it. */
+  preview(world: string): { scene: Scene; state: ScriptState } | string {
+    const begun = web.script('preview.js', world, { locale });
+    if (!begun.ok) return said(begun.error.problems);
+    const seen = { scene: begun.value.scene(), state: begun.value.state() };
+    begun.value.free();
+    return seen;
+  },
+  /** The text of a program as its engine runs it. */
+  runnable(name: string, text: string): string {
+    const made = web.runnable(name, text);
+    return made.ok ? made.value : text;
   },
   /** What is open is the task: its world is that of everything from now on. */
   setTask: () => (task = must().world()),

@@ -24,5 +24,6 @@ export type {
   Progress,
   PropertyFacts,
   Scene,
+  ScriptState,
   State,
 } from '../../../../../web/src/types';

@@ -24,6 +24,7 @@ import type {
   Progress,
   RunOptions,
   Scene,
+  ScriptState,
   ShowOptions,
   State,
 } from '../../../../../web/src/types';
@@ -33,6 +34,8 @@ export function edit(name: string, bytes: Uint8Array, options?: LintOptions): An
 export function blank(name: string, options?: BlankOptions): Answer<Draft>;
 export function palette(options?: LintOptions): Answer<PaletteBlock[]>;
 export function open(name: string, bytes: Uint8Array, options?: OpenOptions): Answer<Project>;
+export function script(name: string, world: string, options?: RunOptions): Answer<Script>;
+export function runnable(name: string, program: string): Answer<string>;
 export function lint(name: string, bytes: Uint8Array, options?: LintOptions): Answer<Finding[]>;
 
 export interface Draft {
@@ -56,6 +59,19 @@ export interface Project {
   generate(language: Language, options?: GenerateOptions): Answer<Generated>;
   judge(options?: RunOptions): Answer<Judged>;
   run(options?: RunOptions): Answer<Run>;
+  free(): void;
+}
+
+export interface Script {
+  ask(word: string, said: string, ticks: number): string;
+  goOn(ticks: number): string;
+  scene(): Scene;
+  state(): ScriptState;
+  way(from: number): Float64Array;
+  news(): News;
+  remarks(): string[];
+  end(): void;
+  outcome(): Judged | undefined;
   free(): void;
 }
 

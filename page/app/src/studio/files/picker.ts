@@ -23,9 +23,9 @@ const pickers = window as Window & Pickers;
 export const canChoose = (): boolean => pickers.showOpenFilePicker !== undefined;
 export const canChooseFolder = (): boolean => pickers.showDirectoryPicker !== undefined;
 
-/** A project that a person chooses; undefined: none. It fails where the browser allows no question. */
+/** A project or a program with text that a person chooses; undefined: none. It fails where the browser allows no question. */
 export async function chosen(): Promise<FileSystemFileHandle | undefined> {
-  const types = [{ accept: { 'application/zip': ['.qrs'] } }];
+  const types = [{ accept: { 'application/zip': ['.qrs'], 'text/plain': ['.py', '.js'] } }];
   return unlessGivenUp(async () => (await pickers.showOpenFilePicker?.({ id: 'trik', types }))?.[0]);
 }
 

@@ -5,7 +5,15 @@
 use super::tree::keys;
 use lang_diagram::brick::Brick;
 use lang_diagram::ports::{Device, GamepadPart, Pad, Port};
-use trikd::js::events::Record;
+
+/// What one of them has brought.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Record {
+    /// Numbers of a stream of them.
+    Numbers(Vec<i32>),
+    /// A line of a stream of text.
+    Line(String),
+}
 
 /// Presses of the keys, seven numbers in the order of the tree.
 pub const KEYS: &str = "keys/device";

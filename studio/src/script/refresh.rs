@@ -39,6 +39,11 @@ impl Readings {
                 *reading = read_vector(robot, *port);
             }
         }
+        self.again(robot)
+    }
+
+    /// The robot once more at the moment of the last [`Readings::of`].
+    pub fn again<'a>(&'a mut self, robot: &'a mut dyn Brick) -> Refreshed<'a> {
         Refreshed {
             robot,
             readings: self,

@@ -2,18 +2,43 @@
 //!
 //! Pure: one line in, at most one command out. What orders there are is in `screen::order`.
 
-use crate::error::Error;
 use lang_diagram::brick::{Command, Figure};
+use std::fmt;
+
+/// Why nothing is shown: the program draws something else.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Undrawn {
+    /// A word where a number has to be.
+    NoNumber(String),
+    /// Labels alone cannot be taken away.
+    LabelsStay,
+    /// An order that there is not.
+    Unknown(String),
+}
+
+impl fmt::Display for Undrawn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoNumber(word) => write!(f, "{word:?} is no number"),
+            Self::LabelsStay => {
+                f.write_str("the simulated display forgets labels only with clear()")
+            }
+            Self::Unknown(verb) => write!(f, "nobody knows the order {verb:?}"),
+        }
+    }
+}
+
+impl std::error::Error for Undrawn {}
 
 /// Height of letters that nobody has chosen.
 const LETTERS: i32 = 20;
 
-fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], Error> {
+fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], Undrawn> {
     let mut found = [0; N];
     for (index, number) in found.iter_mut().enumerate() {
         let word = words.get(index).copied().unwrap_or("");
         let parsed = word.parse::<f64>().ok().filter(|number| number.is_finite());
-        let parsed = parsed.ok_or_else(|| Error::Refused(format!("{word:?} is no number")))?;
+        let parsed = parsed.ok_or_else(|| Undrawn::NoNumber(word.to_owned()))?;
         *number = parsed as i32;
     }
     Ok(found)
@@ -23,7 +48,7 @@ fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], Error> {
 ///
 /// # Errors
 /// The line makes no sense.
-pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), Error> {
+pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), Undrawn> {
     let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
     let words: Vec<&str> = rest.split_ascii_whitespace().collect();
     let is_filled = |at: usize| words.get(at).is_some_and(|word| *word == "1");
@@ -56,11 +81,8 @@ pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), Error>
         "clear" => Command::ClearScreen,
         "redraw" => Command::Redraw,
         "hide" => return Ok(()),
-        "removelabels" => {
-            let why = "the simulated display forgets labels only with clear()";
-            return Err(Error::Refused(why.to_owned()));
-        }
-        _ => return Err(Error::Refused(format!("nobody knows the order {verb:?}"))),
+        "removelabels" => return Err(Undrawn::LabelsStay),
+        _ => return Err(Undrawn::Unknown(verb.to_owned())),
     });
     Ok(())
 }

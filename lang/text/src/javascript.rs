@@ -1,4 +1,4 @@
-//! Texts of programs before they are evaluated: the rule about `main`.
+//! Texts of programs in JavaScript before they are evaluated: the rule about `main`.
 //!
 //! Pure. Knows as much of JavaScript as this rule needs, which is very little.
 
