@@ -9,6 +9,7 @@ mod bindings;
 pub mod change;
 pub mod draft;
 pub mod failure;
+mod flow;
 pub mod judged;
 pub mod limits;
 pub mod options;
