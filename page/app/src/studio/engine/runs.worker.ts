@@ -16,6 +16,8 @@ export interface Seen {
   scene: Scene | undefined;
   /** Only at the end. */
   outcome: Judged | undefined;
+  /** Of data flow, sometimes: what its debugger tells of blocks and ports. */
+  told: unknown;
 }
 
 /** What came out of a run that nobody looked at. */
@@ -27,15 +29,24 @@ export interface Whole extends Pick<Judged, 'verdict' | 'ms' | 'totalScore'> {
 
 /** Between two looks at what stands still, in looks at all else. */
 const SCENE_EVERY = 10;
+/** The same of what blocks and ports of data flow do. */
+const TOLD_EVERY = 3;
 
 let project: web.Project | undefined;
 let run: web.Run | undefined;
 let looks = 0;
 let scene = '';
 let ticks = 0;
+/** The program is one of data flow. */
+let isFlow = false;
 
 function said(findings: Finding[]): string {
   return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
+}
+
+function told(): unknown {
+  const answer = run?.order('look');
+  return answer?.ok && answer.value.done ? answer.value['program'] : undefined;
 }
 
 function see(progress: Progress): Seen {
@@ -59,6 +70,7 @@ function see(progress: Progress): Seen {
     printed,
     scene: changed,
     outcome: run.outcome(),
+    told: isFlow && (looks % TOLD_EVERY === 0 || progress !== 'runs') ? told() : undefined,
   };
 }
 
@@ -74,6 +86,7 @@ const calls = {
     const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
     project = opened.value;
+    isFlow = project.about().language === 'dataflow';
     const begun = project.run({ locale, seed, debug: true });
     if (!begun.ok) return said(begun.error.problems);
     run = begun.value;

@@ -10,6 +10,7 @@ import type { Scene as WorldScene, WorldState } from '../../world/types';
 import type { Judged, Message, Scene, State } from '../engine/facts';
 import { Remote } from '../engine/remote';
 import type { RunCalls, Seen } from '../engine/runs.worker';
+import { Flow } from '../flow/tokens.svelte';
 import type { Studio } from '../studio.svelte';
 import { words } from '../words';
 
@@ -38,6 +39,8 @@ export class Runner {
   speed = $state(1);
   seed = $state(1);
   readonly trail = new Trail();
+  /** What a program of data flow tells of its blocks and ports. */
+  readonly flow = new Flow();
   #remote: Remote<RunCalls> | undefined;
   #frame = 0;
   #last = 0;
@@ -63,7 +66,8 @@ export class Runner {
   /** Blocks in which threads are. */
   get lit(): ReadonlySet<string> {
     const threads = this.isRunning ? (this.state?.threads ?? []) : [];
-    return new Set(threads.map(({ id }) => id));
+    const reacting = this.isRunning ? this.flow.lit : [];
+    return new Set([...threads.map(({ id }) => id), ...reacting]);
   }
 
   /** The world with the robot at its start; whatever ran is over. */
@@ -164,6 +168,7 @@ export class Runner {
         language,
       );
       this.trail.clear();
+      this.flow.clear();
       if (typeof begun !== 'string') return begun;
       this.refusal = words.notRun(begun);
     } catch (error) {
@@ -201,10 +206,11 @@ export class Runner {
     this.#isAsked = false;
   }
 
-  #take({ progress, state, messages, printed, way, scene, outcome }: Seen): void {
+  #take({ progress, state, messages, printed, way, scene, outcome, told }: Seen): void {
     for (let at = 0; at + 1 < way.length; at += 2) this.trail.step(0, way[at] ?? NaN, way[at + 1] ?? NaN);
     if (scene) this.scene = shown(scene);
     this.state = state;
+    this.flow.hear(told, state.ms);
     this.isHeld = progress === 'held';
     this.world = stateOf(state);
     const lines = printed.map((text): Message => ({ level: 'log', ms: state.ms, place: '', text }));
