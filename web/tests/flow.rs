@@ -73,7 +73,7 @@ fn the_palette_has_all_blocks_with_their_ports_in_both_languages() {
     let (one, other) = (of(&english).unwrap(), of(&russian).unwrap());
     assert_eq!(
         (&one["title"], &other["title"]),
-        (&"If".into(), &"Если".into())
+        (&"If".into(), &"\u{415}\u{441}\u{43b}\u{438}".into())
     );
     assert_eq!(
         one["ports"][1],

@@ -37,7 +37,7 @@ test('a file that is no project is refused by name, and the drawing stays', asyn
     const file = join(home, 'file.qrs');
     writeFileSync(file, bytes);
     const chosen = { name, mimeType: 'application/zip', buffer: Buffer.from(bytes) };
-    await page.locator('input[type=file][accept=".qrs"]').setInputFiles(chosen);
+    await page.locator('input[type=file][accept^=".qrs"]').setInputFiles(chosen);
     await page.getByRole('alert').getByText(`${name} is not opened`).waitFor();
     expect(await starts(page).count()).toBe(1);
   }
@@ -70,7 +70,7 @@ test('names and texts with scripts in them are texts', async () => {
   const page = await look.open(site.url);
   await starts(page).waitFor();
   await page
-    .locator('input[type=file][accept=".qrs"]')
+    .locator('input[type=file][accept^=".qrs"]')
     .setInputFiles({ name: `${evil}.qrs`, mimeType: 'application/zip', buffer: Buffer.from(save.value) });
   await page.getByRole('heading', { name: evil }).waitFor();
   await page.locator('.svelte-flow__node', { hasText: 'Strange' }).click();
