@@ -85,7 +85,7 @@ pub fn names(project: &Project) -> (Names, BTreeSet<String>) {
     let mut variables: BTreeSet<String> = local.map(str::to_owned).collect();
     for text in &program.formulas {
         let source = Source::new(&text.text, text.wanted);
-        let new = source.names().into_iter();
+        let new = source.names();
         let new = new.filter(|name| names.find(name).is_none());
         variables.extend(new.map(str::to_owned));
     }
