@@ -187,7 +187,9 @@ fn a_program_in_its_textual_form_becomes_a_drawing_and_is_saved_as_one() {
             let text = project.show(r#"{"source": true}"#).0.unwrap();
             let text = text.as_str().unwrap().to_owned();
             // A save has the version of the language, and edges in the order of the blocks where they begin.
-            let lines = text.lines().filter(|line| !line.starts_with("meta"));
+            let lines = text
+                .lines()
+                .filter(|line| !line.is_empty() && !line.starts_with("meta"));
             let mut lines: Vec<_> = lines.map(str::to_owned).collect();
             lines.sort();
             lines
