@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 26] = [
+const TARGETS: [(&str, Target); 27] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
@@ -18,6 +18,7 @@ const TARGETS: [(&str, Target); 26] = [
     ("flow", lang_dataflow::fuzz::source),
     ("flowsave", lang_dataflow::fuzz::reader),
     ("flowdebug", lang_dataflow::fuzz::debugging),
+    ("flowedits", lang_dataflow::fuzz::edits),
     ("constraints", lang_constraint::fuzz::constraints),
     ("dcml", lang_dcml::fuzz::dcml),
     ("recording", journal::fuzz::recording),

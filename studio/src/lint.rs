@@ -61,10 +61,7 @@ impl Content {
             Self::Diagram(opened) => of_project(&opened.project, opened.problems.clone()),
             Self::Flow(flow, None) => flow.found(),
             Self::Flow(flow, Some(opened)) => {
-                let mut problems = opened.problems.clone();
-                problems.extend(flow.found());
-                problems.extend(of_world_in(&opened.project));
-                problems
+                of_flow(flow, &opened.project, opened.problems.clone())
             }
             Self::World(world) => judge::lint(Texts {
                 world,
@@ -117,6 +114,15 @@ fn is_script(path: &Path) -> bool {
 pub fn of_project(project: &Project, found: Vec<Problem>) -> Vec<Problem> {
     let mut problems = found;
     problems.extend(check(project, World::Robot));
+    problems.extend(of_world_in(project));
+    problems
+}
+
+/// Everything that is wrong with a data-flow program of a save, after what was found while it was read. `project` is what
+/// else the save has.
+pub fn of_flow(flow: &Flow, project: &Project, found: Vec<Problem>) -> Vec<Problem> {
+    let mut problems = found;
+    problems.extend(flow.found());
     problems.extend(of_world_in(project));
     problems
 }

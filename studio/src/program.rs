@@ -158,7 +158,12 @@ fn line(file: &Path, at: Option<Position>, problem: &Problem, locale: Locale) ->
 impl Flow {
     /// That of a save.
     pub fn of_save(opened: &Opened) -> Self {
-        let (project, problems) = project(&opened.save);
+        Self::of_only(&opened.save)
+    }
+
+    /// The same without what else is known of the save.
+    pub fn of_only(save: &Save) -> Self {
+        let (project, problems) = project(save);
         Self {
             project,
             problems,

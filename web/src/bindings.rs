@@ -157,7 +157,7 @@ pub fn open(
 /// The blocks that a person can draw with, in the order of the palette.
 #[wasm_bindgen(unchecked_return_type = "Answer<PaletteBlock[]>")]
 pub fn palette(
-    #[wasm_bindgen(unchecked_optional_param_type = "LintOptions")] wanted: &JsValue,
+    #[wasm_bindgen(unchecked_optional_param_type = "PaletteOptions")] wanted: &JsValue,
 ) -> JsValue {
     let told = match options(wanted) {
         Ok(options) => palette::palette(&options),

@@ -82,6 +82,19 @@ impl Fields {
         }
     }
 
+    /// Places of two ports among those of their blocks.
+    fn ports(&mut self) -> Result<Option<(u8, u8)>, Failure> {
+        let port = |number: f64| match number >= 0.0 && number.fract() == 0.0 {
+            // Too large becomes the largest, which no block has.
+            true => Ok(number as u8),
+            false => Err(wrong("ports")),
+        };
+        match self.pair("ports")? {
+            None => Ok(None),
+            Some((from, to)) => Ok(Some((port(from)?, port(to)?))),
+        }
+    }
+
     fn index(&mut self, name: &str) -> Result<usize, Failure> {
         let number = self.0.remove(name);
         let number = number.as_ref().and_then(Value::as_u64);
@@ -132,6 +145,7 @@ fn of_sheet(name: &str, fields: &mut Fields) -> Result<Option<Change>, Failure> 
                 Some(block) => drawn(block)?,
                 None => return Err(wrong("block")),
             },
+            ports: fields.ports()?,
         },
         "remove" => Change::Remove {
             ids: fields.texts("ids")?,
@@ -143,11 +157,13 @@ fn of_sheet(name: &str, fields: &mut Fields) -> Result<Option<Change>, Failure> 
             from: fields.text("from")?,
             to: fields.text("to")?,
             guard: fields.maybe_text("guard")?.unwrap_or_default(),
+            ports: fields.ports()?,
         },
         "reconnect" => Change::Reconnect {
             link: fields.text("link")?,
             from: fields.text("from")?,
             to: fields.text("to")?,
+            ports: fields.ports()?,
         },
         "set" => Change::Set {
             id: fields.text("id")?,
@@ -210,6 +226,8 @@ fn piece(fields: &mut Fields) -> Result<Piece, Failure> {
             from: fields.index("from")?,
             to: fields.index("to")?,
             guard: fields.maybe_text("guard")?.unwrap_or_default(),
+            ports: fields.ports()?,
+            properties: fields.named("properties")?,
         });
         fields.end()?;
     }
@@ -226,7 +244,7 @@ fn drawn(block: Value) -> Result<Drawn, Failure> {
     let mut drawn = Drawn::of(&kind, place);
     drawn.name = fields.maybe_text("name")?.unwrap_or_default();
     drawn.properties = fields.named("properties")?;
-    drawn.size = fields.pair("size")?.unwrap_or(drawn.size);
+    drawn.size = fields.pair("size")?;
     drawn.calls = fields.maybe_text("calls")?;
     drawn.arguments = fields.named("arguments")?;
     fields.end()?;

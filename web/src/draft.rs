@@ -5,14 +5,18 @@
 
 use crate::change;
 use crate::failure::Failure;
+use crate::flow;
 use crate::options::Options;
 use crate::project::{self, Answer};
 use crate::words;
+use lang_dataflow::edit::DataFlow;
+use lang_dataflow::read::Language;
 use lang_diagram::check;
+use lang_diagram::edit::notation::{ControlFlow, Notation};
 use lang_diagram::edit::{Editor, Piece};
 use lang_diagram::ports::Kit;
 use lang_diagram::project::{Block, Diagram, DiagramKind, Link, Project};
-use lang_diagram::read::Opened;
+use lang_diagram::read::{Opened, Save};
 use lang_diagram::show;
 use lang_expr::names::{Kind, is_own};
 use lang_text::problem::{Locale, Problem};
@@ -23,53 +27,81 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use studio::findings::Findings;
 use studio::lint;
-use studio::program::{self, Program};
+use studio::program::{self, Flow, Program};
 
 /// A project while it is drawn.
 #[derive(Clone, Debug)]
 pub struct Draft {
     /// The name of its file.
     pub name: String,
+    language: Language,
     editor: Editor,
     /// What was strange in the file.
     found: Vec<Problem>,
     /// What it means now; made when it is asked for.
-    meaning: OnceCell<(Project, Vec<Problem>)>,
+    meaning: OnceCell<Meaning>,
+}
+
+/// What a drawing means.
+#[derive(Clone, Debug)]
+struct Meaning {
+    /// Its diagrams of control flow, its kit and its world.
+    project: Project,
+    /// What is strange about these.
+    problems: Vec<Problem>,
+    /// Its diagrams of data flow, if these are drawn.
+    flow: Option<Flow>,
 }
 
 impl Draft {
-    /// Opens a save to be changed. Options: `locale`. `seed` makes ids of what is new unlike those of other projects.
+    /// Opens a save to be changed, or a data-flow program in its textual form, which becomes a save: its comments are not
+    /// kept. Options: `locale`. `seed` makes ids of what is new unlike those of other projects.
     pub fn open(name: &str, bytes: Vec<u8>, options: &str, seed: u128) -> Answer<Self> {
         let mut locale = Locale::default();
         let opened = Options::read(options).and_then(|mut options| {
             locale = options.locale()?;
             options.end()?;
-            if program::is_text(Path::new(name)) {
-                return Err(Failure::Diagram(words::no_drawing()));
-            }
-            if lint::is_world(&bytes) {
+            let is_text = program::is_text(Path::new(name));
+            if !is_text && lint::is_world(&bytes) {
                 let why = Problem::error(words::is_world());
                 return Err(Failure::Unreadable(vec![why]));
             }
-            match program::of_bytes(bytes, false, None)? {
-                Program::Diagram(opened) => Ok(Self {
-                    name: name.to_owned(),
-                    editor: Editor::new(opened.save, seed),
-                    found: opened.problems,
-                    meaning: OnceCell::new(),
-                }),
-                Program::Flow(..) | Program::Text(_) => Err(Failure::Diagram(words::no_drawing())),
-            }
+            Ok(match program::of_bytes(bytes, is_text, None)? {
+                Program::Diagram(opened) => {
+                    Self::of(name, Language::Diagram, opened.save, opened.problems, seed)
+                }
+                Program::Flow(_, opened) => {
+                    Self::of(name, Language::Dataflow, opened.save, opened.problems, seed)
+                }
+                Program::Text(flow) => {
+                    let save = lang_dataflow::save::save(&flow.project);
+                    let name = Path::new(name).with_extension("qrs");
+                    let name = name.to_string_lossy();
+                    Self::of(&name, Language::Dataflow, save, Vec::new(), seed)
+                }
+            })
         });
         (opened, locale)
     }
 
-    /// A new project. Options: `locale`, and `kit`, which is `trikV62Kit` or `trikV6Kit`.
+    fn of(name: &str, language: Language, save: Save, found: Vec<Problem>, seed: u128) -> Self {
+        Self {
+            name: name.to_owned(),
+            language,
+            editor: Editor::of(notation(language), save, seed),
+            found,
+            meaning: OnceCell::new(),
+        }
+    }
+
+    /// A new project. Options: `locale`, `kit`, which is `trikV62Kit` or `trikV6Kit`, and `language`, which is `diagram` or
+    /// `dataflow`.
     pub fn blank(name: &str, options: &str, seed: u128) -> Answer<Self> {
         let mut locale = Locale::default();
         let made = Options::read(options).and_then(|mut options| {
             locale = options.locale()?;
             let kit = options.text("kit")?;
+            let language = options.language()?;
             options.end()?;
             let kit = match kit.as_deref() {
                 None => Kit::V62,
@@ -77,7 +109,8 @@ impl Draft {
             };
             Ok(Self {
                 name: name.to_owned(),
-                editor: Editor::blank(kit, locale, seed),
+                language,
+                editor: Editor::blank_of(notation(language), kit, locale, seed),
                 found: Vec::new(),
                 meaning: OnceCell::new(),
             })
@@ -85,8 +118,20 @@ impl Draft {
         (made, locale)
     }
 
-    fn meaning(&self) -> &(Project, Vec<Problem>) {
-        self.meaning.get_or_init(|| self.editor.save().project())
+    fn meaning(&self) -> &Meaning {
+        self.meaning.get_or_init(|| {
+            let save = self.editor.save();
+            let (project, problems) = save.project();
+            let flow = match self.language {
+                Language::Diagram => None,
+                Language::Dataflow => Some(Flow::of_only(save)),
+            };
+            Meaning {
+                project,
+                problems,
+                flow,
+            }
+        })
     }
 
     /// Makes a change, which is an object of JSON: ids of what is new.
@@ -109,7 +154,7 @@ impl Draft {
 
     /// What it is: diagrams with their parameters, what can be taken back.
     pub fn about(&self) -> Value {
-        let (project, _) = self.meaning();
+        let Meaning { project, flow, .. } = self.meaning();
         let diagram = |one: &Diagram| {
             let parameters = one.parameters.iter();
             json!({
@@ -127,8 +172,15 @@ impl Draft {
         let kit = project.meta.get("lastKitId");
         json!({
             "name": self.name,
+            "language": match self.language {
+                Language::Diagram => "diagram",
+                Language::Dataflow => "dataflow",
+            },
             "kit": kit.and_then(|id| Kit::of_id(id)).unwrap_or_default().id(),
-            "diagrams": project.diagrams.iter().map(diagram).collect::<Vec<_>>(),
+            "diagrams": match flow {
+                None => project.diagrams.iter().map(diagram).collect(),
+                Some(flow) => flow::diagrams(&flow.project),
+            },
             "undo": self.editor.undo_count(),
             "redo": self.editor.redo_count(),
             "hasWorld": project.world.is_some(),
@@ -143,7 +195,10 @@ impl Draft {
 
     /// A diagram with its blocks and links; null if it has none with this id.
     pub fn sheet(&self, diagram: &str, locale: Locale) -> Value {
-        let (project, _) = self.meaning();
+        let Meaning { project, flow, .. } = self.meaning();
+        if let Some(flow) = flow {
+            return flow::sheet(&flow.project, diagram, locale);
+        }
         let Some(diagram) = project.diagrams.iter().find(|one| one.id == diagram) else {
             return Value::Null;
         };
@@ -162,18 +217,37 @@ impl Draft {
 
     /// Everything that is wrong with it, as `trik lint --json` would find it in the file.
     pub fn lint(&self, locale: Locale) -> Value {
-        let (project, problems) = self.meaning();
-        let found = self.found.iter().chain(problems).cloned().collect();
-        let mut problems = lint::of_project(project, found);
-        let findings = Findings::new(Some(project));
+        let Meaning {
+            project,
+            problems,
+            flow,
+        } = self.meaning();
+        let (mut problems, findings) = match flow {
+            None => {
+                let found = self.found.iter().chain(problems).cloned().collect();
+                let problems = lint::of_project(project, found);
+                (problems, Findings::new(Some(project)))
+            }
+            Some(flow) => {
+                let problems = lint::of_flow(flow, project, self.found.clone());
+                (problems, Findings::new(None))
+            }
+        };
         findings.sort(&mut problems);
         Value::Array(findings.json(&self.name, &problems, locale))
     }
 
     /// Names that can stand in its expressions: variables, sensors, functions, constants.
     pub fn names(&self) -> Value {
-        let (project, _) = self.meaning();
-        let names = check::names(project);
+        let Meaning { project, flow, .. } = self.meaning();
+        let (names, variables) = match flow {
+            Some(flow) => flow::names(&flow.project),
+            None => {
+                let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
+                let parameters = parameters.map(|one| one.name.clone());
+                (check::names(project), parameters.collect())
+            }
+        };
         let mut all = Vec::new();
         for slot in 0..u32::try_from(names.len()).unwrap_or(u32::MAX) {
             let is = match names.kind(slot) {
@@ -191,11 +265,10 @@ impl Draft {
         let known: HashSet<&str> = (0..)
             .map_while(|slot| names.kind(slot).map(|_| names.name(slot)))
             .collect();
-        let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
-        let mut parameters: Vec<&str> = parameters.map(|one| &*one.name).collect();
-        parameters.sort_unstable();
-        parameters.dedup();
-        let new = parameters.into_iter().filter(|name| !known.contains(name));
+        let mut new: Vec<&str> = variables.iter().map(String::as_str).collect();
+        new.sort_unstable();
+        new.dedup();
+        let new = new.into_iter().filter(|name| !known.contains(name));
         all.extend(new.map(|name| json!({"name": name, "is": "variable"})));
         Value::Array(all)
     }
@@ -237,14 +310,22 @@ impl Draft {
             let (project, problems) = save.project();
             Ok(project::Project {
                 name: self.name.clone(),
-                program: Program::Diagram(Box::new(Opened {
+                program: program::of_save(Opened {
                     project,
                     problems,
                     save,
-                })),
+                }),
             })
         });
         (opened, locale)
+    }
+}
+
+/// How an editor draws a language.
+fn notation(language: Language) -> &'static dyn Notation {
+    match language {
+        Language::Diagram => &ControlFlow,
+        Language::Dataflow => &DataFlow,
     }
 }
 
@@ -305,7 +386,7 @@ fn piece(piece: &Piece) -> Value {
             "name": one.name,
             "properties": properties,
             "at": [one.place.0, one.place.1],
-            "size": [one.size.0, one.size.1],
+            "size": one.size.map(|(width, height)| [width, height]),
             "calls": one.calls,
             "arguments": arguments,
         })
@@ -313,8 +394,16 @@ fn piece(piece: &Piece) -> Value {
     let links = piece.links.iter();
     json!({
         "blocks": blocks.collect::<Vec<_>>(),
-        "links": links.map(|one| json!({
-            "from": one.from, "to": one.to, "guard": one.guard,
-        })).collect::<Vec<_>>(),
+        "links": links.map(|one| {
+            let written = one.properties.iter();
+            let written = written.map(|(key, value)| (key.clone(), value.as_str().into()));
+            json!({
+                "from": one.from,
+                "to": one.to,
+                "guard": one.guard,
+                "ports": one.ports.map(|(from, to)| [from, to]),
+                "properties": written.collect::<serde_json::Map<String, Value>>(),
+            })
+        }).collect::<Vec<_>>(),
     })
 }

@@ -10,6 +10,7 @@ pub mod change;
 pub mod course;
 pub mod draft;
 pub mod failure;
+mod flow;
 pub mod judged;
 pub mod limits;
 pub mod options;

@@ -6,6 +6,7 @@
 use crate::failure::Failure;
 use crate::words::Wanted;
 use crate::{limits, words};
+use lang_dataflow::read::Language;
 use lang_text::problem::Locale;
 use serde_json::{Map, Value};
 
@@ -61,6 +62,18 @@ impl Options {
             None => Ok(None),
             Some(Value::String(text)) => Ok(Some(text)),
             Some(_) => Err(Self::wrong(name, Wanted::Text)),
+        }
+    }
+
+    /// A language of drawings; without the option control flow.
+    ///
+    /// # Errors
+    /// It is something else.
+    pub fn language(&mut self) -> Result<Language, Failure> {
+        match self.text("language")?.as_deref() {
+            None | Some("diagram") => Ok(Language::Diagram),
+            Some("dataflow") => Ok(Language::Dataflow),
+            Some(_) => Err(Failure::Request(words::no_language())),
         }
     }
 

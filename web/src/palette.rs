@@ -3,22 +3,29 @@
 //! Owns how a row of it is told to a page; names and defaults are those of the table.
 
 use crate::failure::Failure;
+use crate::flow;
 use crate::options::Options;
 use crate::project::Answer;
+use lang_dataflow::read::Language;
 use lang_diagram::blocks::choices::called;
 use lang_diagram::blocks::{Category, Content, Kits, Property, Row, Silent, Type, table};
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
 
-/// All blocks, by category and in the order of the editor's palette. Options: `locale`.
+/// All blocks of a language, by category and in the order of the editor's palette. Options: `locale`, and `language`, which
+/// is `diagram` or `dataflow`.
 pub fn palette(options: &str) -> Answer<Value> {
     let mut locale = Locale::default();
     let told = Options::read(options).and_then(|mut options| {
         locale = options.locale()?;
+        let language = options.language()?;
         options.end()?;
-        Ok::<_, Failure>(table().map(|one| row(one, locale)).collect())
+        Ok::<_, Failure>(match language {
+            Language::Diagram => table().map(|one| row(one, locale)).collect(),
+            Language::Dataflow => flow::palette(locale),
+        })
     });
-    (told.map(Value::Array), locale)
+    (told, locale)
 }
 
 fn row(row: &Row, locale: Locale) -> Value {

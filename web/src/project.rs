@@ -145,7 +145,8 @@ impl Project {
     }
 
     /// The program as sentences, as `trik show` prints it, or with `picture` one of its diagrams as SVG. Options: `locale`,
-    /// `diagram`, `picture`, and `all`, which says defaults of a data-flow program too.
+    /// `diagram`, `picture`, and of a data-flow program `all`, which says defaults too, and `source`, which is its textual form,
+    /// of all diagrams.
     pub fn show(&self, options: &str) -> Answer<Value> {
         let mut locale = Locale::default();
         let shown = Options::read(options).and_then(|mut options| {
@@ -153,9 +154,14 @@ impl Project {
             let name = options.text("diagram")?;
             let is_picture = options.flag("picture")?;
             let with_defaults = options.flag("all")?;
+            let is_source = options.flag("source")?;
             options.end()?;
             let at = self.chosen(name.as_deref())?;
             match &self.program {
+                Program::Diagram(_) if is_source => Err(Failure::Request(words::no_source())),
+                Program::Flow(flow, _) | Program::Text(flow) if is_source => {
+                    Ok(lang_dataflow::text::write(&flow.project))
+                }
                 Program::Diagram(opened) if is_picture => {
                     Ok(picture(&opened.project.diagrams[at], locale))
                 }

@@ -54,6 +54,8 @@ export interface ShowOptions {
   picture?: boolean;
   /** Say defaults of a data-flow program too. */
   all?: boolean;
+  /** The textual form of a data-flow program, as `NAME.flow` has it: all diagrams. */
+  source?: boolean;
 }
 
 export interface GenerateOptions {
@@ -79,20 +81,44 @@ export interface About {
   hasWorld: boolean;
 }
 
+/** Diagrams of control flow, or of data flow. */
+export type DrawnLanguage = 'diagram' | 'dataflow';
+
+export interface PaletteOptions {
+  locale?: Locale;
+  /** Without it `diagram`. */
+  language?: DrawnLanguage;
+}
+
+/** Of data flow: where links begin and end. */
+export interface PortFacts {
+  name: string;
+  way: 'in' | 'out';
+  /** What tokens are; `unit` is one without a value. */
+  of: 'unit' | 'truth' | 'whole' | 'text' | 'list' | 'any';
+  /** Its place on the block, in pixels from the upper left corner. */
+  at: [number, number];
+}
+
 /** A block that a person can draw with. */
 export interface PaletteBlock {
   /** Its type in saves. */
   kind: string;
   title: string;
-  category: 'algorithms' | 'actions' | 'wait' | 'drawing';
+  /** The last four and `drawing` are those of data flow. */
+  category: 'algorithms' | 'actions' | 'wait' | 'drawing' | 'control' | 'streams' | 'devices' | 'shell';
   /** Which kits have it. */
   kits: string[];
   /** It is of old saves, and does nothing. */
   isOld: boolean;
   /** What it does. */
   text: string;
-  /** Its picture: pieces of SVG around the origin, in a square of 50. */
+  /** Its picture: pieces of SVG around the origin, in a square of 50; empty: it has none. */
   icon: string;
+  /** Of data flow: width and height. */
+  size?: [number, number];
+  /** Of data flow: a link names a port by its place here. */
+  ports?: PortFacts[];
   properties: PropertyFacts[];
 }
 
@@ -111,11 +137,14 @@ export interface PropertyFacts {
 export interface BlankOptions {
   locale?: Locale;
   kit?: 'trikV62Kit' | 'trikV6Kit';
+  /** Without it `diagram`. */
+  language?: DrawnLanguage;
 }
 
 /** A project that is drawn. */
 export interface DraftState {
   name: string;
+  language: DrawnLanguage;
   kit: 'trikV62Kit' | 'trikV6Kit';
   diagrams: DrawnDiagram[];
   /** How many changes can be taken back, and made again. */
@@ -168,20 +197,36 @@ export interface DrawnLink {
   from: string | null;
   to: string | null;
   guard: string;
+  /** Of data flow: places among the ports of both ends; null if one of them is at none. */
+  ports?: Ports | null;
+  /** Of data flow: what its queue does, `fifo`, `latest` or `error`, and how many tokens it has room for; empty: as usual. */
+  policy?: string;
+  capacity?: string;
   path: [number, number][];
 }
+
+/** Of data flow: from which port to which one, by their places in the palette. */
+export type Ports = [from: number, to: number];
 
 /** Blocks and links between them, apart from any project. */
 export interface Piece {
   blocks: PieceBlock[];
   /** Ends are places in `blocks`. */
-  links: { from: number; to: number; guard?: string }[];
+  links: {
+    from: number;
+    to: number;
+    guard?: string;
+    ports?: Ports | null;
+    /** Of data flow: `Policy` and `Capacity`. */
+    properties?: Record<string, string>;
+  }[];
 }
 
 export interface PieceBlock {
   kind: string;
   at: [number, number];
-  size?: [number, number];
+  /** Without it that of its type. */
+  size?: [number, number] | null;
   name?: string;
   properties?: Record<string, string>;
   /** The name of the subprogram that it calls. */
@@ -189,14 +234,15 @@ export interface PieceBlock {
   arguments?: Record<string, string>;
 }
 
-/** A change of a drawing; ids are those of a sheet. */
+/** A change of a drawing; ids are those of a sheet. `ports` are needed for data flow, and refused for control flow. */
 export type Change =
   | ({ do: 'add'; diagram: string } & Piece)
-  | { do: 'insert'; link: string; block: PieceBlock }
+  /** `ports` are those of the block: where the link ends, and where the new one begins. */
+  | { do: 'insert'; link: string; block: PieceBlock; ports?: [number, number] }
   | { do: 'remove'; ids: string[] }
   | { do: 'move'; places: { id: string; at: [number, number] }[] }
-  | { do: 'connect'; from: string; to: string; guard?: string }
-  | { do: 'reconnect'; link: string; from: string; to: string }
+  | { do: 'connect'; from: string; to: string; guard?: string; ports?: Ports }
+  | { do: 'reconnect'; link: string; from: string; to: string; ports?: Ports }
   | { do: 'set'; id: string; property: string; value: string }
   | { do: 'argument'; id: string; name: string; value: string }
   | { do: 'call'; id: string; diagram: string }

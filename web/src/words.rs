@@ -126,11 +126,19 @@ pub(crate) fn no_debugger() -> Words {
     )
 }
 
-/// A project that nobody can draw here.
-pub(crate) fn no_drawing() -> Words {
+/// A language of drawings that there is not.
+pub(crate) fn no_language() -> Words {
     Words::new(
-        "this is a program of data flow, and only diagrams of control flow can be drawn here",
-        "это потоковая программа, а рисовать здесь можно только диаграммы потока управления",
+        "the option 'language' is 'diagram' or 'dataflow'",
+        "параметр 'language' - 'diagram' или 'dataflow'",
+    )
+}
+
+/// The text of a program that has none.
+pub(crate) fn no_source() -> Words {
+    Words::new(
+        "only a program of data flow has a textual form; take a language to generate",
+        "текстовая форма есть только у потоковой программы; выберите язык",
     )
 }
 

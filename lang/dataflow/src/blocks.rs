@@ -279,16 +279,33 @@ pub const PORT_OF_CALL: &str = "identifier";
 /// The flag that makes a block wait for all its inputs.
 pub const SYNCHRONIZED: &str = "synch";
 
+/// What blocks of the palette stand together for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Group {
+    /// Blocks that compute and steer.
+    Control,
+    /// Blocks that arbitrate between streams.
+    Streams,
+    /// Motors, sensors and all else of the robot.
+    Devices,
+    /// Sound, system, camera, messages and files.
+    Shell,
+    /// What draws.
+    Drawing,
+}
+
+/// All rows by their groups, in the order of the palette.
+pub const GROUPS: [(Group, &[Row]); 5] = [
+    (Group::Control, control::ROWS),
+    (Group::Streams, flow::ROWS),
+    (Group::Devices, devices::ROWS),
+    (Group::Shell, shell::ROWS),
+    (Group::Drawing, drawing::ROWS),
+];
+
 /// All rows, in the order of the palette.
 pub fn table() -> impl Iterator<Item = &'static Row> {
-    let all = [
-        control::ROWS,
-        flow::ROWS,
-        devices::ROWS,
-        shell::ROWS,
-        drawing::ROWS,
-    ];
-    all.into_iter().flatten()
+    GROUPS.into_iter().flat_map(|(_, rows)| rows)
 }
 
 /// The row of an element name of the present version.

@@ -29,11 +29,16 @@ mod writers;
 #[cfg(test)]
 mod tests;
 
-use crate::lower::{Lowered, lower};
+use crate::blocks::Kind;
+use crate::lower::{DATA, INPUTS, Lowered, lower};
 use crate::project::Project;
+use crate::sensors;
 use arrivals::Arrivals;
 use found::Found;
-use lang_text::problem::{Problem, keep};
+use lang_expr::{Names, Source};
+use lang_text::problem::{Problem, Words, keep};
+use std::collections::BTreeSet;
+use types::Of;
 
 /// Makes a project ready to run, with everything that can be told without running it.
 pub fn check(project: &Project) -> Lowered {
@@ -62,6 +67,29 @@ pub fn check(project: &Project) -> Lowered {
     }
     sort(&mut lowered.problems);
     lowered
+}
+
+/// Why tokens of an output of the first kind cannot be taken by an input of the second one, as far as the table of blocks
+/// shows it.
+pub fn refuses(gives: Kind, takes: Kind) -> Option<Words> {
+    let of = Of::of_kind(gives);
+    (!of.fits(takes)).then(|| edges::misfit(of, takes))
+}
+
+/// Names that can stand in expressions of a project: those of its kit, and variables, with those that tokens have in a
+/// block.
+pub fn names(project: &Project) -> (Names, BTreeSet<String>) {
+    let program = lower(project).program;
+    let names = sensors::names_of(program.kit);
+    let local = INPUTS.iter().chain(DATA).copied();
+    let mut variables: BTreeSet<String> = local.map(str::to_owned).collect();
+    for text in &program.formulas {
+        let source = Source::new(&text.text, text.wanted);
+        let new = source.names();
+        let new = new.filter(|name| names.find(name).is_none());
+        variables.extend(new.map(str::to_owned));
+    }
+    (names, variables)
 }
 
 /// The worst first, and otherwise in the order in which they were found.

@@ -16,8 +16,10 @@ use lang_text::problem::Locale;
 use std::rc::Rc;
 
 mod debugging;
+mod edits;
 
 pub use debugging::debugging;
+pub use edits::{edits, edits_of};
 
 /// Instants that a program runs here.
 const INSTANTS: u32 = 60;

@@ -12,6 +12,7 @@ pub mod blocks;
 pub mod check;
 pub mod debug;
 pub mod diary;
+pub mod edit;
 pub mod fuzz;
 pub mod generate;
 pub mod limits;

@@ -8,7 +8,7 @@ use lang_diagram::objects::{Kind, NOTHING, Object, Objects, ROOT};
 use lang_diagram::read::{DATAFLOW_VERSION_KEY, Meta, Save};
 
 /// The one version of the language.
-const VERSION: &str = "1.0.0";
+pub(crate) const VERSION: &str = "1.0.0";
 
 /// The save of a project. Objects whose ids are not new are left out: a project that was read has none. The diagram that is
 /// run comes first, because in a save the first main diagram is run.

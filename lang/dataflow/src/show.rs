@@ -71,6 +71,30 @@ fn shown(property: &Property) -> &'static str {
     property.shown.trim_end_matches(['=', ':'])
 }
 
+/// What a block does, in a few words: texts of properties that are not those of a new block, with their names where there
+/// are several of a kind.
+pub fn details(block: &Block) -> String {
+    let said = changed(block).into_iter().map(|one| {
+        let text = shortened(one.text, crate::limits::PICTURE_PROPERTY_MAX);
+        match one.is_flag || block.row.is_some_and(|row| row.properties.len() > 2) {
+            true => format!("{} = {text}", one.name),
+            false => text,
+        }
+    });
+    said.collect::<Vec<_>>().join(", ")
+}
+
+/// The kind of a block and its caption, if that says more.
+pub fn name(block: &Block, locale: Locale) -> String {
+    let kind = kind(block, locale);
+    let caption = block.name.trim();
+    let is_kind = |row: &crate::blocks::Row| [row.shown, row.russian].contains(&caption);
+    match caption.is_empty() || caption == block.element || block.row.is_some_and(is_kind) {
+        true => kind,
+        false => format!("{kind} '{}'", shortened(caption, 60)),
+    }
+}
+
 /// A property that is said.
 struct Changed<'a> {
     /// The name that the editor shows.

@@ -3,16 +3,16 @@
 //! Owns what each change does to the objects of a save, and the way back. What a change does not name stays as it came, also
 //! what nobody here understands. Knows no meaning of a block: what is wrong with a drawing is found by [`super::check`].
 
-use super::blocks;
 use super::objects::{self, Object, ROOT};
 use super::project::{DiagramKind, Parameter};
-use super::read::{Meta, VERSION, VERSION_KEY};
+use super::read::Meta;
 use super::save::Save;
 use crate::limits;
 use lang_expr::Kit;
 use lang_text::problem::{Locale, Problem};
 
 mod changes;
+pub mod notation;
 mod pen;
 mod piece;
 mod route;
@@ -21,6 +21,7 @@ mod tests;
 mod words;
 
 use changes::carry_out;
+use notation::{ControlFlow, Notation};
 use pen::{Ids, Pen, Step};
 pub use piece::{Drawn, Piece, Wire};
 
@@ -43,6 +44,8 @@ pub enum Change {
         link: String,
         /// The block.
         block: Drawn,
+        /// Of a language with ports where the link ends at it, and where the new one begins.
+        ports: Option<(u8, u8)>,
     },
     /// Blocks and links disappear, and with a block the links at it.
     Remove {
@@ -62,6 +65,8 @@ pub enum Change {
         to: String,
         /// Its guard.
         guard: String,
+        /// Of a language with ports those of both ends: their places among the ports of the block.
+        ports: Option<(u8, u8)>,
     },
     /// A link begins or ends at another block.
     Reconnect {
@@ -71,12 +76,14 @@ pub enum Change {
         from: String,
         /// The id of the block where it ends then.
         to: String,
+        /// Of a language with ports those of both ends.
+        ports: Option<(u8, u8)>,
     },
     /// A property of a block or link gets a value.
     Set {
         /// The id of the block or link.
         id: String,
-        /// The name of the property in the save; of a link `Guard`.
+        /// The name of the property in the save; of a link `Guard`, of data flow `Policy` and `Capacity`.
         property: String,
         /// What it is then.
         value: String,
@@ -92,7 +99,7 @@ pub enum Change {
     },
     /// A block calls another subprogram; what it gave parameters of the same names stays.
     Call {
-        /// The id of the block, a `Subprogram`.
+        /// The id of the block, which is one for calls.
         id: String,
         /// The id of the diagram of the subprogram.
         diagram: String,
@@ -138,6 +145,7 @@ pub enum Change {
 /// A save, and how it came to be what it is.
 #[derive(Clone, Debug)]
 pub struct Editor {
+    notation: &'static dyn Notation,
     save: Save,
     ids: Ids,
     done: Vec<Step>,
@@ -145,10 +153,16 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Begins to change a save. New objects get ids that `seed` decides: with a random one they are unlike those of other
-    /// projects.
+    /// Begins to change the diagrams of control flow of a save. New objects get ids that `seed` decides: with a random one
+    /// they are unlike those of other projects.
     pub fn new(save: Save, seed: u128) -> Self {
+        Self::of(&ControlFlow, save, seed)
+    }
+
+    /// Begins to change the diagrams of a language of a save. Others stay as they are.
+    pub fn of(notation: &'static dyn Notation, save: Save, seed: u128) -> Self {
         Self {
+            notation,
             save,
             ids: Ids::new(seed),
             done: Vec::new(),
@@ -156,8 +170,13 @@ impl Editor {
         }
     }
 
-    /// A project with one main diagram, in which a program begins and ends; its names are in this language.
+    /// A project with one main diagram of control flow, in which a program begins and ends; its names are in this language.
     pub fn blank(kit: Kit, locale: Locale, seed: u128) -> Self {
+        Self::blank_of(&ControlFlow, kit, locale, seed)
+    }
+
+    /// The same of a language.
+    pub fn blank_of(notation: &'static dyn Notation, kit: Kit, locale: Locale, seed: u128) -> Self {
         let mut objects = objects::Objects::default();
         let root = Object {
             id: ROOT.to_owned(),
@@ -167,23 +186,14 @@ impl Editor {
         // There is nothing that could have its id.
         let _ = objects.add(root);
         let mut meta = Meta::default();
-        let version = (VERSION_KEY.to_owned(), VERSION.to_owned());
-        meta.keys.extend([version]);
-        let mut blank = Self::new(Save::made(objects, meta), seed);
-        let mut pen = Pen::new(&mut blank.save, &mut blank.ids);
+        let (key, version) = notation.elements().version;
+        meta.keys.extend([(key.to_owned(), version.to_owned())]);
+        let mut blank = Self::of(notation, Save::made(objects, meta), seed);
+        let mut pen = Pen::new(notation, &mut blank.save, &mut blank.ids);
         pen.meta().keys.insert(KIT_KEY.to_owned(), kit.id().into());
         let made = pen.diagram(DiagramKind::Main, words::main_name(locale));
-        let block = |kind: &str, x: f64| Drawn {
-            name: blocks::find(kind)
-                .map_or("", |row| row.shown_in(locale))
-                .to_owned(),
-            ..Drawn::of(kind, (x, 200.0))
-        };
-        let piece = Piece {
-            blocks: vec![block("InitialNode", 100.0), block("FinalNode", 400.0)],
-            links: Vec::new(),
-        };
-        // Both are known blocks.
+        let piece = notation.first(locale);
+        // Its blocks are known.
         let _ = made.and_then(|diagram| piece::add(&mut pen, &diagram, &piece));
         let _ = pen.finish();
         blank
@@ -199,7 +209,7 @@ impl Editor {
     /// # Errors
     /// An id that is not there, a text that a save cannot carry, more than a project may have; nothing has changed then.
     pub fn apply(&mut self, change: &Change) -> Result<Vec<String>, Problem> {
-        let mut pen = Pen::new(&mut self.save, &mut self.ids);
+        let mut pen = Pen::new(self.notation, &mut self.save, &mut self.ids);
         match carry_out(&mut pen, change) {
             Ok(new) => {
                 let step = pen.finish();
@@ -250,7 +260,7 @@ impl Editor {
 
     /// Blocks, and links between them, as they can be added elsewhere.
     pub fn copy(&self, ids: &[String]) -> Piece {
-        piece::copy(&self.save, ids)
+        self.notation.copy(&self.save, ids)
     }
 
     /// The oldest changes go when all of them take too much memory.

@@ -131,7 +131,7 @@ const FIGURES = {
     const page = await look.open(site.url);
     const buffer = Buffer.from(draft.save().value);
     await page
-      .locator('input[type=file][accept=".qrs"]')
+      .locator('input[type=file][accept^=".qrs"]')
       .setInputFiles({ name: 'many.qrs', mimeType: 'application/zip', buffer });
     await page.getByRole('heading', { name: 'many.qrs' }).waitFor();
     await page.getByRole('button', { name: 'Run', exact: true }).click();
@@ -179,7 +179,7 @@ const FIGURES = {
     };
     const buffer = Buffer.from(draft.save().value);
     await page
-      .locator('input[type=file][accept=".qrs"]')
+      .locator('input[type=file][accept^=".qrs"]')
       .setInputFiles({ name: 'many.qrs', mimeType: 'application/zip', buffer });
     await page.getByRole('button', { name: 'Run', exact: true }).click();
     const heaps = [];

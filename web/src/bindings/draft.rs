@@ -45,7 +45,7 @@ fn texts(list: &JsValue, what: &str) -> Result<Vec<String>, Failure> {
     list.iter().map(one).collect()
 }
 
-/// Opens a save (`.qrs`) with diagrams of control flow to be changed. The draft has to be freed.
+/// Opens a save (`.qrs`) or a data-flow program in its textual form (`.flow`) to be changed. The draft has to be freed.
 #[wasm_bindgen(js_name = edit, unchecked_return_type = "Answer<Draft>")]
 pub fn edit(
     #[wasm_bindgen(unchecked_param_type = "string")] name: &JsValue,
@@ -60,7 +60,7 @@ pub fn edit(
     }
 }
 
-/// A new project: a main diagram with a beginning and an end. The draft has to be freed.
+/// A new project: a main diagram, of control flow with a beginning and an end. The draft has to be freed.
 #[wasm_bindgen(unchecked_return_type = "Answer<Draft>")]
 pub fn blank(
     #[wasm_bindgen(unchecked_param_type = "string")] name: &JsValue,

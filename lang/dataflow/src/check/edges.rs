@@ -13,6 +13,7 @@ use crate::lower::{DATA, chosen};
 use crate::program::{Flow, Formula, NodeId, Op, Program, Target};
 use lang_expr::tree::Node as Part;
 use lang_expr::{Source, Value};
+use lang_text::problem::Words;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
@@ -62,19 +63,24 @@ fn look_at_edge(made: Emitted, to: Target, texts: &mut Texts<'_>, found: &mut Fo
     } else if (of, port.of) == (Of::Digits, Kind::Whole) {
         found.warn(place(), words::number_as_text());
     } else if !of.fits(port.of) {
-        let wanted = match port.of {
-            Kind::Unit | Kind::Any => words::A_VALUE,
-            Kind::Truth => words::A_TRUTH,
-            Kind::Whole => words::A_WHOLE,
-            Kind::Text => words::A_TEXT,
-            Kind::List | Kind::Items(_) => words::A_LIST,
-        };
-        let count = match port.of {
-            Kind::Items(count) => Some(count),
-            Kind::Unit | Kind::Any | Kind::Truth | Kind::Whole | Kind::Text | Kind::List => None,
-        };
-        found.error(place(), words::does_not_fit(of.words(), wanted, count));
+        found.error(place(), misfit(of, port.of));
     }
+}
+
+/// What is wrong with a token of this type at a port of this kind.
+pub(super) fn misfit(of: Of, kind: Kind) -> Words {
+    let wanted = match kind {
+        Kind::Unit | Kind::Any => words::A_VALUE,
+        Kind::Truth => words::A_TRUTH,
+        Kind::Whole => words::A_WHOLE,
+        Kind::Text => words::A_TEXT,
+        Kind::List | Kind::Items(_) => words::A_LIST,
+    };
+    let count = match kind {
+        Kind::Items(count) => Some(count),
+        Kind::Unit | Kind::Any | Kind::Truth | Kind::Whole | Kind::Text | Kind::List => None,
+    };
+    words::does_not_fit(of.words(), wanted, count)
 }
 
 /// Whether a block takes a token without a value as well as any other, or hands it on.

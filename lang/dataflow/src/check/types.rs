@@ -83,6 +83,19 @@ impl Of {
         }
     }
 
+    /// What a port gives by its kind alone.
+    pub(super) fn of_kind(kind: Kind) -> Self {
+        match kind {
+            Kind::Unit => Self::Unit,
+            Kind::Truth => Self::Truth,
+            Kind::Whole => Self::Whole,
+            Kind::Text => Self::Computed,
+            Kind::List => Self::List(0),
+            Kind::Items(count) => Self::List(count.into()),
+            Kind::Any => Self::Any,
+        }
+    }
+
     fn of_value(value: &Value) -> Self {
         match value {
             Value::Nil => Self::Unit,

@@ -2,12 +2,12 @@
 //!
 //! Owns what a change is refused for. How both objects of a pair are kept in step is known to `pen`.
 
+use super::notation::{Heading, Port};
 use super::pen::Pen;
-use super::route::{self, Side};
+use super::route::{self, Ends};
 use super::{Change, Drawn, KIT_KEY, Piece, piece, words};
-use crate::blocks;
 use crate::limits;
-use crate::objects::{self, Kind, Object, ROOT};
+use crate::objects::{self, Kind, Object, ROOT, element};
 use crate::project::{Argument, DiagramKind, Parameter};
 use crate::read;
 use crate::save::{is_link, writable};
@@ -19,13 +19,21 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String>, Problem> {
     match change {
         Change::Add { diagram, piece } => return piece::add(pen, diagram, piece),
-        Change::Insert { link, block } => return insert(pen, link, block),
+        Change::Insert { link, block, ports } => return insert(pen, link, block, *ports),
         Change::Remove { ids } => remove(pen, ids)?,
         Change::Move { places } => move_to(pen, places)?,
-        Change::Connect { from, to, guard } => {
-            return Ok(vec![connect(pen, from, to, guard)?]);
-        }
-        Change::Reconnect { link, from, to } => reconnect(pen, link, from, to)?,
+        Change::Connect {
+            from,
+            to,
+            guard,
+            ports,
+        } => return Ok(vec![connect(pen, (from, to), guard, *ports)?]),
+        Change::Reconnect {
+            link,
+            from,
+            to,
+            ports,
+        } => reconnect(pen, link, (from, to), *ports)?,
         Change::Set {
             id,
             property,
@@ -71,18 +79,8 @@ fn link<'a>(pen: &'a Pen<'_>, id: &str) -> Result<&'a Object, Problem> {
 
 pub(super) fn diagram<'a>(pen: &'a Pen<'_>, id: &str) -> Result<&'a Object, Problem> {
     let found = pen.get(id);
-    let found = found.filter(|object| kind_of(object).is_some());
+    let found = found.filter(|object| pen.kind_of(object).is_some());
     found.ok_or_else(|| missing(id, words::no_diagram()))
-}
-
-/// Which diagram an object is; nothing if it is none of control flow.
-pub(super) fn kind_of(object: &Object) -> Option<DiagramKind> {
-    let is_diagram = object.is_graphical() && object.parent == ROOT;
-    match object.element() {
-        "RobotsDiagramNode" if is_diagram => Some(DiagramKind::Main),
-        "SubprogramDiagram" if is_diagram => Some(DiagramKind::Subprogram),
-        _ => None,
-    }
 }
 
 pub(super) fn missing(id: &str, words: Words) -> Problem {
@@ -119,7 +117,12 @@ pub(super) fn carried(text: &str) -> Result<(), Problem> {
     writable(text)
 }
 
-fn insert(pen: &mut Pen<'_>, id: &str, drawn: &Drawn) -> Result<Vec<String>, Problem> {
+fn insert(
+    pen: &mut Pen<'_>,
+    id: &str,
+    drawn: &Drawn,
+    ports: Option<(u8, u8)>,
+) -> Result<Vec<String>, Problem> {
     let object = link(pen, id)?;
     let parent = object.parent.clone();
     let end = |key| object.property(key).unwrap_or_default().to_owned();
@@ -132,8 +135,16 @@ fn insert(pen: &mut Pen<'_>, id: &str, drawn: &Drawn) -> Result<Vec<String>, Pro
     let Some(middle) = new.first().cloned() else {
         return Ok(new);
     };
-    reconnect(pen, id, &from, &middle)?;
-    new.push(connect(pen, &middle, &to, "")?);
+    let had = route::places(pen, id);
+    let (first, second) = match (ports, had) {
+        (Some((into, out)), Some((leaves, enters))) => (Some((leaves, into)), Some((out, enters))),
+        (Some(_), None) if pen.ports(&from).is_some() => {
+            return Err(missing(id, words::no_port()));
+        }
+        (Some(_), None) | (None, Some(_) | None) => (ports, ports),
+    };
+    reconnect(pen, id, (&from, &middle), first)?;
+    new.push(connect(pen, (&middle, &to), "", second)?);
     Ok(new)
 }
 
@@ -168,8 +179,6 @@ fn remove(pen: &mut Pen<'_>, ids: &[String]) -> Result<(), Problem> {
     Ok(())
 }
 
-const LINK: &str = "ControlFlow";
-
 fn move_to(pen: &mut Pen<'_>, places: &[(String, (f64, f64))]) -> Result<(), Problem> {
     let mut links = HashSet::new();
     for (id, place) in places {
@@ -190,54 +199,112 @@ fn move_to(pen: &mut Pen<'_>, places: &[(String, (f64, f64))]) -> Result<(), Pro
     Ok(())
 }
 
+const GUARD: &str = "Guard";
+
 pub(super) fn connect(
     pen: &mut Pen<'_>,
-    from: &str,
-    to: &str,
+    (from, to): (&str, &str),
     guard: &str,
+    ports: Option<(u8, u8)>,
 ) -> Result<String, Problem> {
     carried(guard)?;
+    let elements = pen.notation.elements();
+    let has_guards = elements.at_link.contains(&GUARD);
+    if !has_guards && !guard.is_empty() {
+        return Err(missing(from, words::no_property(GUARD)));
+    }
     let parent = block(pen, from)?.parent.clone();
     if block(pen, to)?.parent != parent {
         return Err(missing(to, words::other_diagram()));
     }
-    let link = pen.pair(LINK, &parent, words::LINK_NAME)?;
-    pen.set_logical(&link, "Guard", guard);
-    attach(pen, &link, from, to);
+    let ends = ends(pen, (from, to), ports)?;
+    let link = pen.pair(elements.link, &parent, words::LINK_NAME)?;
+    if has_guards {
+        pen.set_logical(&link, GUARD, guard);
+    }
+    attach(pen, &link, (from, to), ends);
     Ok(link)
 }
 
-fn reconnect(pen: &mut Pen<'_>, id: &str, from: &str, to: &str) -> Result<(), Problem> {
-    let parent = link(pen, id)?.parent.clone();
+/// Another end for a link. What it begins at keeps its place among the links there: tokens go in that order.
+fn reconnect(
+    pen: &mut Pen<'_>,
+    id: &str,
+    (from, to): (&str, &str),
+    ports: Option<(u8, u8)>,
+) -> Result<(), Problem> {
+    let object = link(pen, id)?;
+    let parent = object.parent.clone();
+    let had = |key| object.property(key).unwrap_or_default().to_owned();
+    let changed: Vec<&str> = [("from", from), ("to", to)]
+        .into_iter()
+        .filter(|(key, end)| had(key) != **end)
+        .map(|(key, _)| key)
+        .collect();
     for end in [from, to] {
         if block(pen, end)?.parent != parent {
             return Err(missing(end, words::other_diagram()));
         }
     }
-    pen.detach(id);
-    attach(pen, id, from, to);
+    let ends = ends(pen, (from, to), ports)?;
+    pen.detach_ends(id, &changed);
+    attach(pen, id, (from, to), ends);
     Ok(())
 }
 
-/// Both ends of a link; which side of a block it leaves and enters is seen from where they are.
-fn attach(pen: &mut Pen<'_>, link: &str, from: &str, to: &str) {
-    pen.attach(link, "from", from);
-    pen.attach(link, "to", to);
-    route::straight(pen, link, Side::between(pen, from, to));
+/// Where a link leaves and enters two blocks: at ports, if the language has them, and else at sides that are seen from where
+/// they are.
+fn ends(pen: &Pen<'_>, (from, to): (&str, &str), ports: Option<(u8, u8)>) -> Result<Ends, Problem> {
+    let (Some(leaves), Some(enters)) = (pen.ports(from), pen.ports(to)) else {
+        return match ports {
+            None => Ok(Ends::between(pen, from, to)),
+            Some(_) => Err(missing(from, words::no_ports())),
+        };
+    };
+    let Some((out, into)) = ports else {
+        return Err(missing(from, words::which_port()));
+    };
+    let port = |of: &[Port], at: u8, id: &str| {
+        let found = of.get(usize::from(at)).copied();
+        let found = found.filter(|one| one.number >= 0);
+        found.ok_or_else(|| missing(id, words::no_port()))
+    };
+    let (first, last) = (port(&leaves, out, from)?, port(&enters, into, to)?);
+    if first.heading != Heading::Out {
+        return Err(missing(from, words::no_output()));
+    }
+    if last.heading != Heading::In {
+        return Err(missing(to, words::no_input()));
+    }
+    let refused = pen
+        .notation
+        .refuses((element(from), out), (element(to), into));
+    match refused {
+        Some(why) => Err(missing(to, why)),
+        None => Ok(Ends::at(first.number, last.number)),
+    }
 }
 
-fn set(pen: &mut Pen<'_>, id: &str, property: &str, value: &str) -> Result<(), Problem> {
+/// Both ends of a link.
+fn attach(pen: &mut Pen<'_>, link: &str, (from, to): (&str, &str), ends: Ends) {
+    pen.attach(link, "from", from);
+    pen.attach(link, "to", to);
+    route::straight(pen, link, ends);
+}
+
+pub(super) fn set(pen: &mut Pen<'_>, id: &str, property: &str, value: &str) -> Result<(), Problem> {
     carried(value)?;
     let object = match pen.get(id) {
         Some(object) if is_link(object) => link(pen, id)?,
         Some(_) | None => block(pen, id)?,
     };
+    let at_link = pen.notation.elements().at_link;
     let is_known = match is_link(object) {
-        true => property == "Guard",
+        true => at_link.contains(&property),
         false => {
-            let row = blocks::find(object.element());
+            let known = pen.notation.known(object.element(), pen.logical(id));
             let is_there = |logical: &Object| logical.property(property).is_some();
-            row.is_some_and(|row| row.property(property).is_some())
+            known.is_some_and(|one| one.properties.iter().any(|(name, _)| *name == property))
                 || !WIRING.contains(&property) && pen.logical(id).is_some_and(is_there)
         }
     };
@@ -245,7 +312,12 @@ fn set(pen: &mut Pen<'_>, id: &str, property: &str, value: &str) -> Result<(), P
         let shown = property.chars().take(limits::EDIT_ID_SHOWN);
         return Err(missing(id, words::no_property(&shown.collect::<String>())));
     }
-    pen.set_logical(id, property, value);
+    // What a link of data flow does not say has its default; nothing written is no word for it.
+    if property != GUARD && at_link.contains(&property) && value.is_empty() {
+        pen.clear_logical(id, property);
+    } else {
+        pen.set_logical(id, property, value);
+    }
     Ok(())
 }
 
@@ -263,6 +335,9 @@ fn argument(pen: &mut Pen<'_>, id: &str, name: &str, value: &str) -> Result<(), 
     carried(name)?;
     carried(value)?;
     block(pen, id)?;
+    if !pen.notation.elements().has_parameters {
+        return Err(missing(id, words::no_parameters_here()));
+    }
     let logical = pen.logical(id);
     let text = logical.and_then(|one| one.property("dynamicProperties"));
     let mut all = read::parameters::actual(text.unwrap_or_default()).unwrap_or_default();
@@ -288,10 +363,10 @@ fn argument(pen: &mut Pen<'_>, id: &str, name: &str, value: &str) -> Result<(), 
 }
 
 fn call(pen: &mut Pen<'_>, id: &str, callee: &str) -> Result<(), Problem> {
-    if kind_of(diagram(pen, callee)?) != Some(DiagramKind::Subprogram) {
+    if pen.kind_of(diagram(pen, callee)?) != Some(DiagramKind::Subprogram) {
         return Err(missing(callee, words::no_subprogram()));
     }
-    if block(pen, id)?.element() != "Subprogram" {
+    if block(pen, id)?.element() != pen.notation.elements().call {
         return Err(missing(id, words::no_call()));
     }
     let given = pen
@@ -329,7 +404,7 @@ pub(super) fn written_arguments(all: &[Argument]) -> String {
 
 fn rename(pen: &mut Pen<'_>, id: &str, name: &str) -> Result<(), Problem> {
     named(name)?;
-    if kind_of(diagram(pen, id)?) == Some(DiagramKind::Subprogram) {
+    if pen.kind_of(diagram(pen, id)?) == Some(DiagramKind::Subprogram) {
         free(pen, id, name)?;
     }
     pen.rename(id, name);
@@ -340,7 +415,10 @@ fn rename(pen: &mut Pen<'_>, id: &str, name: &str) -> Result<(), Problem> {
 }
 
 fn parameters_of(pen: &mut Pen<'_>, id: &str, all: &[Parameter]) -> Result<(), Problem> {
-    if kind_of(diagram(pen, id)?) != Some(DiagramKind::Subprogram) {
+    if !pen.notation.elements().has_parameters {
+        return Err(missing(id, words::no_parameters_here()));
+    }
+    if pen.kind_of(diagram(pen, id)?) != Some(DiagramKind::Subprogram) {
         return Err(missing(id, words::no_parameters()));
     }
     let mut names = HashSet::new();
@@ -371,11 +449,9 @@ fn parameters_of(pen: &mut Pen<'_>, id: &str, all: &[Parameter]) -> Result<(), P
 const TYPES: [&str; 4] = ["int", "float", "bool", "string"];
 
 fn remove_diagram(pen: &mut Pen<'_>, id: &str) -> Result<(), Problem> {
-    let kind = kind_of(diagram(pen, id)?);
+    let kind = pen.kind_of(diagram(pen, id)?);
     let diagrams = pen.diagrams();
-    let kinds = diagrams
-        .iter()
-        .filter_map(|one| pen.get(one).and_then(kind_of));
+    let kinds = diagrams.iter().filter_map(|one| pen.kind_of(pen.get(one)?));
     let mains = kinds.filter(|one| *one == DiagramKind::Main).count();
     if kind == Some(DiagramKind::Main) && mains == 1 {
         return Err(missing(id, words::last_main()));
@@ -411,7 +487,7 @@ pub(super) fn subprograms(pen: &Pen<'_>) -> HashMap<String, String> {
     let mut all = HashMap::new();
     for id in pen.diagrams() {
         let Some(object) = pen.get(&id) else { continue };
-        if kind_of(object) != Some(DiagramKind::Subprogram) {
+        if pen.kind_of(object) != Some(DiagramKind::Subprogram) {
             continue;
         }
         let logical = object.logical.as_deref().and_then(|id| pen.get(id));

@@ -3,7 +3,7 @@
 //! Owns the two sides of each change, and the wiring that one change of a person means in both objects of a pair: lists of
 //! links, children, calls. Knows no change.
 
-use super::changes::kind_of;
+use super::notation::{Notation, Port};
 use super::words;
 use crate::limits;
 use crate::objects::{self, Kind, NOTHING, Object, ROOT};
@@ -84,7 +84,7 @@ impl Ids {
     }
 
     /// The id of an object of this kind: a random UUID as far as the seed is random (RFC 9562, version 4).
-    fn next(&mut self, kind: &str) -> String {
+    fn next(&mut self, path: &str, kind: &str) -> String {
         self.made += 1;
         // Another id of the same seed differs in its last digits.
         let number = self.seed.wrapping_add(u128::from(self.made));
@@ -93,12 +93,14 @@ impl Ids {
         let digits = format!("{number:032x}");
         let (a, b, c) = (&digits[..8], &digits[8..12], &digits[12..16]);
         let (d, e) = (&digits[16..20], &digits[20..]);
-        format!("qrm:/RobotsMetamodel/RobotsDiagram/{kind}/{{{a}-{b}-{c}-{d}-{e}}}")
+        format!("qrm:/{path}/{kind}/{{{a}-{b}-{c}-{d}-{e}}}")
     }
 }
 
 /// A save while one change is made.
 pub(super) struct Pen<'a> {
+    /// The language that is drawn.
+    pub(super) notation: &'static dyn Notation,
     save: &'a mut Save,
     ids: &'a mut Ids,
     before: BTreeMap<String, Option<Object>>,
@@ -106,8 +108,13 @@ pub(super) struct Pen<'a> {
 }
 
 impl<'a> Pen<'a> {
-    pub(super) fn new(save: &'a mut Save, ids: &'a mut Ids) -> Self {
+    pub(super) fn new(
+        notation: &'static dyn Notation,
+        save: &'a mut Save,
+        ids: &'a mut Ids,
+    ) -> Self {
         Self {
+            notation,
             save,
             ids,
             before: BTreeMap::new(),
@@ -164,6 +171,14 @@ impl<'a> Pen<'a> {
         }
     }
 
+    /// Takes a text of it away.
+    pub(super) fn clear_logical(&mut self, id: &str, key: &str) {
+        let logical = self.logical_id(id);
+        if let Some(object) = logical.and_then(|logical| self.get_mut(&logical)) {
+            object.properties.retain(|one| one.key != key);
+        }
+    }
+
     /// Gives it an id.
     pub(super) fn set_logical_id(&mut self, id: &str, key: &str, value: &str) {
         let logical = self.logical_id(id);
@@ -180,10 +195,27 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// Ids of all diagrams of control flow, in the order of the save.
+    /// Which diagram an object is; nothing if it is none of the language that is drawn.
+    pub(super) fn kind_of(&self, object: &Object) -> Option<DiagramKind> {
+        let elements = self.notation.elements();
+        let is_diagram = object.is_graphical() && object.parent == ROOT;
+        match object.element() {
+            main if is_diagram && main == elements.main => Some(DiagramKind::Main),
+            sub if is_diagram && sub == elements.subprogram => Some(DiagramKind::Subprogram),
+            _ => None,
+        }
+    }
+
+    /// The ports of a block; nothing if the language has none.
+    pub(super) fn ports(&self, id: &str) -> Option<Vec<Port>> {
+        let kind = objects::element(id);
+        self.notation.ports(kind, self.logical(id))
+    }
+
+    /// Ids of all diagrams of the language, in the order of the save.
     pub(super) fn diagrams(&self) -> Vec<String> {
         let root = self.get(ROOT).map_or(&[][..], |root| &root.children);
-        let is_one = |id: &&String| self.get(id).and_then(kind_of).is_some();
+        let is_one = |id: &&String| self.get(id).and_then(|one| self.kind_of(one)).is_some();
         root.iter().filter(is_one).cloned().collect()
     }
 
@@ -212,11 +244,15 @@ impl<'a> Pen<'a> {
 
     /// A diagram without blocks.
     pub(super) fn diagram(&mut self, kind: DiagramKind, name: &str) -> Result<String, Problem> {
+        let elements = self.notation.elements();
         let element = match kind {
-            DiagramKind::Main => "RobotsDiagramNode",
-            DiagramKind::Subprogram => "SubprogramDiagram",
+            DiagramKind::Main => elements.main,
+            DiagramKind::Subprogram => elements.subprogram,
         };
         let id = self.pair(element, ROOT, name)?;
+        if !elements.has_parameters {
+            return Ok(id);
+        }
         match kind {
             DiagramKind::Main => self.set_logical(&id, "devicesConfiguration", ""),
             DiagramKind::Subprogram => self.set_logical(&id, "shape", ""),
@@ -233,7 +269,7 @@ impl<'a> Pen<'a> {
         let (graphical, logical) = (self.fresh(kind), self.fresh(kind));
         let (graphical, logical) = objects::pair(graphical, logical, parent, name);
         let id = graphical.id.clone();
-        let is_diagram = kind_of(&graphical).is_some();
+        let is_diagram = self.kind_of(&graphical).is_some();
         if let Some(root) = self.get_mut(ROOT) {
             root.children.push(logical.id.clone());
             if is_diagram {
@@ -250,7 +286,7 @@ impl<'a> Pen<'a> {
 
     fn fresh(&mut self, kind: &str) -> String {
         loop {
-            let id = self.ids.next(kind);
+            let id = self.ids.next(self.notation.elements().path, kind);
             // What was taken back may come again.
             if self.get(&id).is_none() && !self.before.contains_key(&id) {
                 return id;
@@ -283,9 +319,14 @@ impl<'a> Pen<'a> {
 
     /// Both ends of a link hang loose.
     pub(super) fn detach(&mut self, link: &str) {
+        self.detach_ends(link, &["from", "to"]);
+    }
+
+    /// Some of the ends of a link hang loose.
+    pub(super) fn detach_ends(&mut self, link: &str, ends: &[&str]) {
         let both = [Some(link.to_owned()), self.logical_id(link)];
         for link in both.into_iter().flatten() {
-            for key in ["from", "to"] {
+            for key in ends {
                 let end = self.get(&link).and_then(|one| one.property(key));
                 let Some(end) = end.map(str::to_owned) else {
                     continue;

@@ -7,7 +7,6 @@ use super::changes::{self, carried, diagram, parameters, sane, subprograms, writ
 use super::pen::Pen;
 use super::route;
 use super::words;
-use crate::blocks;
 use crate::limits;
 use crate::objects::Kind;
 use crate::project::{Argument, Block};
@@ -35,8 +34,8 @@ pub struct Drawn {
     pub properties: Vec<(String, String)>,
     /// Its upper left corner, in px.
     pub place: (f64, f64),
-    /// Width and height, in px.
-    pub size: (f64, f64),
+    /// Width and height, in px; those of its type if nothing is said.
+    pub size: Option<(f64, f64)>,
     /// Of a call the name of its subprogram.
     pub calls: Option<String>,
     /// What a call gives its parameters, by their names.
@@ -49,7 +48,6 @@ impl Drawn {
         Self {
             kind: kind.to_owned(),
             place,
-            size: (route::SIZE, route::SIZE),
             ..Self::default()
         }
     }
@@ -64,6 +62,10 @@ pub struct Wire {
     pub to: usize,
     /// Its guard.
     pub guard: String,
+    /// Of a language with ports those of both ends.
+    pub ports: Option<(u8, u8)>,
+    /// What else is written at it.
+    pub properties: Vec<(String, String)>,
 }
 
 /// Adds a piece to a diagram: ids of its blocks, then of its links.
@@ -82,7 +84,11 @@ pub(super) fn add(pen: &mut Pen<'_>, sheet: &str, piece: &Piece) -> Result<Vec<S
             return Err(Problem::error(words::no_end()));
         }
         let (from, to) = (from.clone(), to.clone());
-        ids.push(changes::connect(pen, &from, &to, &wire.guard)?);
+        let link = changes::connect(pen, (&from, &to), &wire.guard, wire.ports)?;
+        for (key, value) in &wire.properties {
+            changes::set(pen, &link, key, value)?;
+        }
+        ids.push(link);
     }
     Ok(ids)
 }
@@ -98,28 +104,32 @@ fn draw(
             && kind.len() <= limits::EDIT_ID_SHOWN
             && kind.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
     };
+    let elements = pen.notation.elements();
     let kept = [
         "ControlFlow",
         "Edge",
         "RobotsDiagramNode",
         "SubprogramDiagram",
+        elements.main,
+        elements.subprogram,
     ];
     if !is_name(&drawn.kind) || kept.contains(&&*drawn.kind) {
         return Err(Problem::error(words::no_kind()));
     }
     let (x, y) = sane(drawn.place)?;
-    let (width, height) = sane(drawn.size)?;
-    let (width, height) = (width.max(1.0), height.max(1.0));
-    let row = blocks::find(&drawn.kind);
+    let known = pen.notation.known(&drawn.kind, None);
+    if known.is_none() && !pen.notation.takes_unknown() {
+        return Err(Problem::error(words::no_kind()));
+    }
     carried(&drawn.name)?;
-    let name = match (&*drawn.name, row) {
-        ("", Some(row)) => row.shown,
+    let name = match (&*drawn.name, &known) {
+        ("", Some(known)) => known.shown,
         ("", None) => &drawn.kind,
         (name, _) => name,
     };
     let id = pen.pair(&drawn.kind, sheet, name)?;
-    for property in row.iter().flat_map(|row| row.properties) {
-        pen.set_logical(&id, property.name, property.default);
+    for (key, value) in known.iter().flat_map(|known| &known.properties) {
+        pen.set_logical(&id, key, value);
     }
     for (key, value) in &drawn.properties {
         carried(key)?;
@@ -129,6 +139,9 @@ fn draw(
         }
         pen.set_logical(&id, key, value);
     }
+    let usual = known.map_or((route::SIZE, route::SIZE), |known| known.size);
+    let (width, height) = sane(drawn.size.unwrap_or(usual))?;
+    let (width, height) = (width.max(1.0), height.max(1.0));
     if let Some(object) = pen.get_mut(&id) {
         let corners = format!("0, 0 : {width}, 0 : {width}, {height} : 0, {height} : ");
         object.set(Kind::Shape("QPointF"), "position", &format!("{x}, {y}"));
@@ -198,7 +211,12 @@ pub(super) fn copy(save: &Save, ids: &[String]) -> Piece {
             let at = |end: Option<usize>| places.get(&*diagram.blocks.get(end?)?.id).copied();
             if let (Some(from), Some(to)) = (at(link.from), at(link.to)) {
                 let guard = link.guard.clone();
-                piece.links.push(Wire { from, to, guard });
+                piece.links.push(Wire {
+                    from,
+                    to,
+                    guard,
+                    ..Wire::default()
+                });
             }
         }
     }
@@ -214,8 +232,8 @@ fn drawn(save: &Save, block: &Block) -> Drawn {
         properties: block.properties.clone().into_iter().collect(),
         place: block.position,
         size: match block.size {
-            (width, height) if width > 0.0 && height > 0.0 => block.size,
-            _ => (route::SIZE, route::SIZE),
+            (width, height) if width > 0.0 && height > 0.0 => Some(block.size),
+            _ => None,
         },
         calls: callee
             .and_then(|one| one.property("name"))

@@ -1,8 +1,10 @@
 //! The way of a link on the canvas: from a side of one block to a side of another.
 //!
 //! Owns the numbers by which the editor keeps sides and corners: of a port the whole part is the side, clockwise from the
-//! left, and the rest how far along it; corners are relative to the place of the link.
+//! left, and the rest how far along it; corners are relative to the place of the link. Where a language has ports with places,
+//! the number is that of the port.
 
+use super::notation::Port;
 use super::pen::Pen;
 use crate::objects::{Kind, Object};
 use crate::read::graph::{point, points};
@@ -24,7 +26,7 @@ type Area = ((f64, f64), (f64, f64));
 
 impl Side {
     /// The sides of two blocks that face each other.
-    pub(super) fn between(pen: &Pen<'_>, from: &str, to: &str) -> (Self, Self) {
+    fn between(pen: &Pen<'_>, from: &str, to: &str) -> (Self, Self) {
         let middle = |id| {
             let ((x, y), (width, height)) = pen.get(id).map_or(((0.0, 0.0), (0.0, 0.0)), area);
             (x + width / 2.0, y + height / 2.0)
@@ -50,8 +52,58 @@ impl Side {
     }
 }
 
+/// Where a link leaves a block and enters another one, as a save has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends {
+    from: f64,
+    to: f64,
+}
+
+impl Ends {
+    /// Sides of two blocks that face each other.
+    pub(super) fn between(pen: &Pen<'_>, from: &str, to: &str) -> Self {
+        let (from, to) = Side::between(pen, from, to);
+        Self {
+            from: from.port(),
+            to: to.port(),
+        }
+    }
+
+    /// Ports by their numbers.
+    pub(super) fn at(from: i32, to: i32) -> Self {
+        Self {
+            from: from.into(),
+            to: to.into(),
+        }
+    }
+}
+
+/// The ports of a link, by their places among those of their blocks; nothing if one end is at none.
+pub(super) fn places(pen: &Pen<'_>, link: &str) -> Option<(u8, u8)> {
+    let object = pen.get(link)?;
+    let place = |end: &str, port: &str| {
+        let ports = pen.ports(object.property(end)?)?;
+        let number: f64 = object.property(port)?.parse().ok()?;
+        let is_meant = |one: &Port| f64::from(one.number) == number.round();
+        u8::try_from(ports.iter().position(is_meant)?).ok()
+    };
+    Some((place("from", "fromPort")?, place("to", "toPort")?))
+}
+
 /// Where a port of a block is.
-fn spot(((x, y), (width, height)): Area, port: f64) -> (f64, f64) {
+fn spot(pen: &Pen<'_>, block: &Object, port: f64) -> (f64, f64) {
+    let area @ ((x, y), (width, height)) = area(block);
+    let Some(ports) = pen.ports(&block.id) else {
+        return on_side(area, port);
+    };
+    let is_meant = |one: &&Port| f64::from(one.number) == port.round();
+    match ports.iter().find(is_meant) {
+        Some(found) => (x + found.at.0, y + found.at.1),
+        None => (x + width / 2.0, y + height / 2.0),
+    }
+}
+
+fn on_side(((x, y), (width, height)): Area, port: f64) -> (f64, f64) {
     let part = port.rem_euclid(1.0);
     match port.rem_euclid(4.0).floor() {
         0.0 => (x, y + height * part),
@@ -73,9 +125,9 @@ fn area(object: &Object) -> Area {
     )
 }
 
-/// Makes the way of a link straight between two sides.
-pub(super) fn straight(pen: &mut Pen<'_>, link: &str, (from, to): (Side, Side)) {
-    draw(pen, link, (from.port(), to.port()), &[]);
+/// Makes the way of a link straight.
+pub(super) fn straight(pen: &mut Pen<'_>, link: &str, ends: Ends) {
+    draw(pen, link, ends, &[]);
 }
 
 /// The ends of a link go with their blocks; corners between them stay.
@@ -93,28 +145,29 @@ pub(super) fn follow(pen: &mut Pen<'_>, link: &str) {
     let (Some(from), Some(to)) = (object.property("from"), object.property("to")) else {
         return;
     };
-    if inner.is_empty() && pen.get(from).is_some() && pen.get(to).is_some() {
-        let sides = Side::between(pen, from, to);
-        return straight(pen, link, sides);
+    let has_sides = pen.ports(from).is_none() && pen.ports(to).is_none();
+    if has_sides && inner.is_empty() && pen.get(from).is_some() && pen.get(to).is_some() {
+        let ends = Ends::between(pen, from, to);
+        return straight(pen, link, ends);
     }
     let port = |key: &str| {
         let text = object.property(key).unwrap_or_default();
         text.parse().ok().filter(|port: &f64| port.is_finite())
     };
-    let ports = (
-        port("fromPort").unwrap_or(2.5),
-        port("toPort").unwrap_or(0.5),
-    );
-    draw(pen, link, ports, &inner);
+    let ends = Ends {
+        from: port("fromPort").unwrap_or(2.5),
+        to: port("toPort").unwrap_or(0.5),
+    };
+    draw(pen, link, ends, &inner);
 }
 
-fn draw(pen: &mut Pen<'_>, link: &str, ports: (f64, f64), inner: &[(f64, f64)]) {
+fn draw(pen: &mut Pen<'_>, link: &str, ends: Ends, inner: &[(f64, f64)]) {
     let end = |key: &str, port: f64| {
         let block = pen.get(pen.get(link)?.property(key)?)?;
-        (block.id != crate::objects::ROOT).then(|| spot(area(block), port))
+        (block.id != crate::objects::ROOT).then(|| spot(pen, block, port))
     };
     // A loose end stays where it is.
-    let (Some(from), Some(to)) = (end("from", ports.0), end("to", ports.1)) else {
+    let (Some(from), Some(to)) = (end("from", ends.from), end("to", ends.to)) else {
         return;
     };
     let mut corners = String::from("0, 0 : ");
@@ -128,6 +181,6 @@ fn draw(pen: &mut Pen<'_>, link: &str, ports: (f64, f64), inner: &[(f64, f64)]) 
     object.set(Kind::Shape("QPointF"), "position", &position);
     object.set(Kind::Shape("QPolygon"), "configuration", &corners);
     let number = Kind::Number("double");
-    object.set(number, "fromPort", &ports.0.to_string());
-    object.set(number, "toPort", &ports.1.to_string());
+    object.set(number, "fromPort", &ends.from.to_string());
+    object.set(number, "toPort", &ends.to.to_string());
 }

@@ -38,6 +38,7 @@ fn connect(editor: &mut Editor, from: &str, to: &str) -> String {
         from: from.to_owned(),
         to: to.to_owned(),
         guard: String::new(),
+        ports: None,
     };
     editor.apply(&change).unwrap().remove(0)
 }
@@ -356,7 +357,11 @@ fn a_block_is_put_into_a_link_and_taken_out_of_it_by_one_step() {
     set(&mut editor, &link, "Guard", "true");
     let before = project(&editor);
     let block = Drawn::of("Timer", (250.0, 200.0));
-    let change = Change::Insert { link, block };
+    let change = Change::Insert {
+        link,
+        block,
+        ports: None,
+    };
     assert_eq!(editor.apply(&change).unwrap().len(), 2);
     let diagram = &project(&editor).diagrams[0];
     let wires = diagram

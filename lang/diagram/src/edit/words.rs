@@ -66,6 +66,45 @@ pub(super) fn no_property(name: &str) -> Words {
     )
 }
 
+pub(super) fn no_parameters_here() -> Words {
+    Words::new(
+        "subprograms of this language have no parameters: tokens come in by their ports",
+        "у подпрограмм этого языка нет параметров: данные приходят в них через порты",
+    )
+}
+
+pub(super) fn no_ports() -> Words {
+    Words::new(
+        "blocks of this language have no ports",
+        "у блоков этого языка нет портов",
+    )
+}
+
+pub(super) fn which_port() -> Words {
+    Words::new(
+        "a link leads from an output to an input: say which ones",
+        "связь идёт от выхода к входу: укажите, от какого к какому",
+    )
+}
+
+pub(super) fn no_port() -> Words {
+    Words::new("the block has no such port", "такого порта у блока нет")
+}
+
+pub(super) fn no_output() -> Words {
+    Words::new(
+        "a link begins at an output, and this is an input: draw it the other way round",
+        "связь начинается у выхода, а это вход: нарисуйте её наоборот",
+    )
+}
+
+pub(super) fn no_input() -> Words {
+    Words::new(
+        "a link ends at an input, and this is an output",
+        "связь кончается у входа, а это выход",
+    )
+}
+
 pub(super) fn no_parameters() -> Words {
     Words::new(
         "only a subprogram has parameters",

@@ -103,6 +103,7 @@ fn piece(choices: &mut Choices<'_>) -> Piece {
         from: choices.below(count + 1),
         to: choices.below(count),
         guard: choices.text(),
+        ..Wire::default()
     });
     let links = links.collect();
     Piece { blocks, links }
@@ -114,6 +115,7 @@ fn change(choices: &mut Choices<'_>, editor: &Editor) -> Change {
         13 => Change::Insert {
             link: choices.id(&ids.links),
             block: Drawn::of("Timer", choices.place()),
+            ports: None,
         },
         kind @ 0..=7 => of_sheet(choices, &ids, kind),
         kind => of_project(choices, &ids, kind),
@@ -143,11 +145,13 @@ fn of_sheet(choices: &mut Choices<'_>, ids: &Ids, kind: usize) -> Change {
             from: choices.id(&ids.blocks),
             to: choices.id(&ids.blocks),
             guard: choices.text(),
+            ports: None,
         },
         5 => Change::Reconnect {
             link: choices.id(&ids.links),
             from: choices.id(&ids.blocks),
             to: choices.id(&ids.blocks),
+            ports: None,
         },
         6 => Change::Set {
             id: choices.id(&[&ids.blocks[..], &ids.links[..]].concat()),

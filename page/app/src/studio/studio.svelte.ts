@@ -7,18 +7,23 @@ import { EDIT_FILE_MB_MAX, KEEP_AFTER_MS, LOOK_AFTER_MS, PASTE_SHIFT_PX } from '
 import type {
   Change,
   DrawnBlock,
+  DrawnLanguage,
   DrawnLink,
   DrawnSheet,
   Finding,
   Language,
   PaletteBlock,
   Piece,
+  Ports,
 } from './engine/facts';
 import type { Drawing, DraftCalls, Looks } from './engine/drafts.worker';
 import { Remote } from './engine/remote';
 import { arranged } from './draw/arrange';
 import { guardOfNext } from './draw/guards';
 import { pieceOf } from './draw/piece';
+import { arranged as flowArranged } from './flow/arrange';
+import { through } from './flow/ports';
+import { words as ofFlow } from './flow/words';
 import { type Kept, keep, kept } from './keep';
 import { PLAIN, type Point } from './run/point';
 import { isScript } from './script/names';
@@ -34,12 +39,12 @@ const WORLD_PART = 'worldModel';
 const NONE: Looks = { findings: [], names: [], text: '', isWritten: true };
 
 export class Studio {
-  palette = $state.raw<PaletteBlock[]>([]);
+  #palettes = $state.raw<Record<DrawnLanguage, PaletteBlock[]>>({ diagram: [], dataflow: [] });
   drawing = $state.raw<Drawing | undefined>(undefined);
   looks = $state.raw<Looks>(NONE);
   /** Ids of blocks and links. */
   chosen = $state.raw<ReadonlySet<string>>(new Set());
-  language = $state<Language | 'sentences'>('sentences');
+  language = $state<Language | 'sentences' | 'source'>('sentences');
   /** Ids of blocks before which a run stops, and when. */
   breakpoints = $state.raw<ReadonlyMap<string, Point>>(new Map());
   part = $state<Part>('program');
@@ -59,6 +64,9 @@ export class Studio {
   hasTask = $state(false);
   isSaved = $state(true);
   readonly #drafts: Remote<DraftCalls>;
+  /** What is drawn is data flow: links go from port to port. */
+  readonly isFlow = $derived(this.drawing?.state.language === 'dataflow');
+  readonly palette = $derived(this.#palettes[this.isFlow ? 'dataflow' : 'diagram']);
   readonly #byKind = $derived(new Map(this.palette.map((block) => [block.kind, block])));
   #look: ReturnType<typeof setTimeout> | undefined;
   #lookNumber = 0;
@@ -102,6 +110,11 @@ export class Studio {
     return this.drawing?.sheet ?? null;
   }
 
+  /** The type of blocks that call a subprogram. */
+  get callKind(): string {
+    return this.isFlow ? 'DFUserBlock' : 'Subprogram';
+  }
+
   /** Blocks that the kit of the project has. */
   get offered(): PaletteBlock[] {
     const kit = this.drawing?.state.kit ?? 'trikV62Kit';
@@ -130,7 +143,7 @@ export class Studio {
   /** Begins: with the project of the address, with what was left here, or with a new one. */
   async begin(hash: string): Promise<void> {
     try {
-      this.palette = await this.#drafts.call('speak', language);
+      this.#palettes = await this.#drafts.call('speak', language);
     } catch (error) {
       this.refusal = words.broken(String(error));
       return;
@@ -187,13 +200,13 @@ export class Studio {
   }
 
   /** A new project, or the task from its beginning. */
-  async blank(): Promise<void> {
+  async blank(language: DrawnLanguage = 'diagram'): Promise<void> {
     const why = this.refusal;
     if (this.#task) {
       await this.open(this.#task.name, this.#task.bytes);
       return;
     }
-    this.#show(await this.#drafts.call('blank', words.untitled));
+    this.#show(await this.#drafts.call('blank', words.untitled, language));
     if (!this.isReady) this.refusal = why;
   }
 
@@ -208,6 +221,7 @@ export class Studio {
       return;
     }
     this.#show(opened);
+    if (name.toLowerCase().endsWith('.flow')) this.notice = ofFlow.textOpened(name);
   }
 
   /** Looks at another diagram. */
@@ -251,14 +265,31 @@ export class Studio {
   async add(kind: string, at: [number, number], calls?: string, link?: string): Promise<void> {
     const name = this.facts(kind)?.title ?? '';
     const block = { kind, at, name, ...(calls ? { calls } : {}) };
-    const change: Change = link
-      ? { do: 'insert', link, block }
-      : { do: 'add', diagram: this.diagram, blocks: [block], links: [] };
+    const ports = link ? this.#portsInto(link, kind) : undefined;
+    const change: Change =
+      link && (ports || !this.isFlow)
+        ? { do: 'insert', link, block, ...(ports ? { ports } : {}) }
+        : { do: 'add', diagram: this.diagram, blocks: [block], links: [] };
     const made = await this.apply(change);
     if (made.length > 0) this.chosen = new Set(made.slice(0, 1));
   }
 
-  async connect(from: string, to: string): Promise<void> {
+  /** By which ports a block of data flow goes into a link. */
+  #portsInto(id: string, kind: string): Ports | undefined {
+    const link = this.sheet?.links.find((one) => one.id === id);
+    const port = (end: string | null, at: number | undefined) =>
+      this.facts(this.block(end ?? '')?.kind ?? '')?.ports?.[at ?? -1];
+    const gives = port(link?.from ?? null, link?.ports?.[0]);
+    const takes = port(link?.to ?? null, link?.ports?.[1]);
+    return gives && takes ? through(gives, takes, this.facts(kind)) : undefined;
+  }
+
+  /** Draws a link; of data flow from an output of the first block to an input of the second one. */
+  async connect(from: string, to: string, ports?: Ports): Promise<void> {
+    if (ports) {
+      await this.apply({ do: 'connect', from, to, ports });
+      return;
+    }
     const block = this.block(from);
     const leaving = (this.sheet?.links ?? []).filter((link) => link.from === from);
     const guard = block ? guardOfNext(block.kind, leaving) : '';
@@ -302,7 +333,9 @@ export class Studio {
 
   /** Puts the blocks of the diagram in order. */
   async arrange(): Promise<void> {
-    if (this.sheet) await this.apply({ do: 'move', places: arranged(this.sheet) });
+    if (!this.sheet) return;
+    const places = this.isFlow ? flowArranged(this.sheet) : arranged(this.sheet);
+    await this.apply({ do: 'move', places });
   }
 
   async addSubprogram(): Promise<void> {
@@ -319,7 +352,10 @@ export class Studio {
       at: [x, 200],
       name: this.facts(kind)?.title ?? '',
     });
-    const blocks = [block('InitialNode', 100), block('FinalNode', 400)];
+    const [first, last] = this.isFlow
+      ? (['DFInPortBlock', 'DFOutPortBlock'] as const)
+      : (['InitialNode', 'FinalNode'] as const);
+    const blocks = [block(first, 100), block(last, 400)];
     await this.apply({ do: 'add', diagram, blocks, links: [] });
   }
 
@@ -379,7 +415,7 @@ export class Studio {
   }
 
   /** Shows the program in another language. */
-  write(language: Language | 'sentences'): void {
+  write(language: Language | 'sentences' | 'source'): void {
     this.language = language;
     void this.#lookNow();
   }
@@ -409,6 +445,8 @@ export class Studio {
     this.name = drawing.state.name;
     this.isSaved = true;
     this.opened += 1;
+    const isThere = this.isFlow ? ['source', 'lua', 'c'].includes(this.language) : this.language !== 'source';
+    if (!isThere) this.language = 'sentences';
     void this.#lookNow();
   }
 

@@ -13,6 +13,10 @@ export const COLOURS = {
   wait: '#a86d0f',
   drawing: '#8a4fb5',
   subprograms: '#5d6770',
+  control: '#3572b0',
+  streams: '#a86d0f',
+  devices: '#2f9e5a',
+  shell: '#2b8a8a',
 } as const;
 
 /** Puts a picture into an element of SVG for as long as that is there. */

@@ -4,11 +4,13 @@ import init, * as web from 'trik-studio-web';
 import type {
   Change,
   DraftState,
+  DrawnLanguage,
   DrawnSheet,
   Finding,
   Language,
   Locale,
   NameFacts,
+  PaletteBlock,
   Scene,
   ScriptState,
 } from './facts';
@@ -88,12 +90,15 @@ function named(findings: Finding[]): Finding[] {
 const calls = {
   speak(language: Locale) {
     locale = language;
-    const blocks = web.palette({ locale });
-    return blocks.ok ? blocks.value : [];
+    const blocks = (of: DrawnLanguage): PaletteBlock[] => {
+      const told = web.palette({ locale, language: of });
+      return told.ok ? told.value : [];
+    };
+    return { diagram: blocks('diagram'), dataflow: blocks('dataflow') };
   },
   /** A text says why it is not opened; what was open stays then. */
   open: (name: string, bytes: Uint8Array) => begin(web.edit(name, bytes, { locale })),
-  blank: (name: string) => begin(web.blank(name, { locale })),
+  blank: (name: string, language: DrawnLanguage) => begin(web.blank(name, { locale, language })),
   see: (diagram: string) => now(diagram),
   apply(change: Change, diagram: string): { new: string[]; drawing: Drawing } | string {
     const made = must().apply(change, locale);
@@ -147,14 +152,14 @@ const calls = {
   /** What is open is the task: its world is that of everything from now on. */
   setTask: () => (task = must().world()),
   /** What is wrong with it, and the program as text from the diagram of this name on. */
-  look(wanted: Language | 'sentences', diagram: string): Looks {
+  look(wanted: Language | 'sentences' | 'source', diagram: string): Looks {
     const findings = named(must().lint(locale));
     const names = must().names();
     const project = must().project({ locale });
     if (!project.ok) return { findings, names, text: said(named(project.error.problems)), isWritten: false };
     const shown =
-      wanted === 'sentences'
-        ? project.value.show({ locale, diagram })
+      wanted === 'sentences' || wanted === 'source'
+        ? project.value.show({ locale, diagram, source: wanted === 'source' })
         : project.value.generate(wanted, { locale });
     project.value.free();
     if (!shown.ok) return { findings, names, text: said(named(shown.error.problems)), isWritten: false };

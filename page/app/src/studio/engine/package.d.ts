@@ -2,6 +2,7 @@
 // one to the other.
 
 import type {
+  About,
   Answer,
   BlankOptions,
   Change,
@@ -20,6 +21,7 @@ import type {
   News,
   OpenOptions,
   PaletteBlock,
+  PaletteOptions,
   Piece,
   Progress,
   RunOptions,
@@ -32,7 +34,7 @@ import type {
 export default function init(): Promise<unknown>;
 export function edit(name: string, bytes: Uint8Array, options?: LintOptions): Answer<Draft>;
 export function blank(name: string, options?: BlankOptions): Answer<Draft>;
-export function palette(options?: LintOptions): Answer<PaletteBlock[]>;
+export function palette(options?: PaletteOptions): Answer<PaletteBlock[]>;
 export function open(name: string, bytes: Uint8Array, options?: OpenOptions): Answer<Project>;
 export function script(name: string, world: string, options?: RunOptions): Answer<Script>;
 export function runnable(name: string, program: string): Answer<string>;
@@ -55,6 +57,7 @@ export interface Draft {
 }
 
 export interface Project {
+  about(): About;
   show(options?: ShowOptions): Answer<string>;
   generate(language: Language, options?: GenerateOptions): Answer<Generated>;
   judge(options?: RunOptions): Answer<Judged>;

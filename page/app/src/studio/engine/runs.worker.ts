@@ -23,6 +23,8 @@ export interface Seen {
   log: string[];
   /** Only at the end. */
   outcome: Judged | undefined;
+  /** Of data flow, sometimes: what its debugger tells of blocks and ports. */
+  flow: unknown;
 }
 
 /** What an order came to. */
@@ -41,12 +43,16 @@ export interface Whole extends Pick<Judged, 'verdict' | 'ms' | 'totalScore'> {
 const SCENE_EVERY = 10;
 /** Moments that one look tells: a long one is told in so many steps. */
 const MOMENTS = 100;
+/** The same of what blocks and ports of data flow do. */
+const FLOW_EVERY = 3;
 
 let project: web.Project | undefined;
 let run: web.Run | undefined;
 let looks = 0;
 let scene = '';
 let ticks = 0;
+/** The program is one of data flow. */
+let isFlow = false;
 
 function said(findings: Finding[]): string {
   return findings.map(({ block, message }) => (block ? `${block}: ${message}` : message)).join('\n');
@@ -68,18 +74,20 @@ function see(progress: Progress, before: State[] = []): Seen {
   ticks += way.length / 2;
   const state = run.state();
   // Between two pieces of a search nothing is told.
-  const looked = progress === 'runs' ? undefined : asked('look');
+  const isAsked = progress !== 'runs' || (isFlow && looks % FLOW_EVERY === 0);
+  const looked = isAsked ? asked('look') : undefined;
   return {
     way,
     progress,
     state,
     moments: [...before, state],
-    told: looked?.done ? (heldOf(looked['program']) ?? told) : undefined,
+    told: progress !== 'runs' && looked?.done ? (heldOf(looked['program']) ?? told) : undefined,
     log,
     messages,
     printed,
     scene: changed,
     outcome: run.outcome(),
+    flow: isFlow && looked?.done ? looked['program'] : undefined,
   };
 }
 
@@ -118,6 +126,7 @@ const calls = {
     const opened = web.open(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
     project = opened.value;
+    isFlow = project.about().language === 'dataflow';
     const begun = project.run({ locale, seed, debug: true, explain: true });
     if (!begun.ok) return said(begun.error.problems);
     run = begun.value;

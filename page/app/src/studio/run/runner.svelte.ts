@@ -12,6 +12,7 @@ import type { Scene as WorldScene, WorldState } from '../../world/types';
 import type { Judged, Message, Scene, State } from '../engine/facts';
 import { Remote } from '../engine/remote';
 import type { RunCalls, Seen } from '../engine/runs.worker';
+import { Flow } from '../flow/tokens.svelte';
 import type { Studio } from '../studio.svelte';
 import { words } from '../words';
 import { Moments } from './moments';
@@ -60,6 +61,8 @@ export class Runner {
   readonly moments = new Moments();
   /** Another number after each look, for what shows `moments`. */
   beat = $state(0);
+  /** What a program of data flow tells of its blocks and ports. */
+  readonly flow = new Flow();
   #remote: Remote<RunCalls> | undefined;
   #frame = 0;
   #last = 0;
@@ -126,7 +129,8 @@ export class Runner {
 
   /** Blocks in which threads are. */
   get lit(): ReadonlySet<string> {
-    return new Set(this.#places.map(({ id }) => id));
+    const reacting = this.isRunning ? this.flow.lit : [];
+    return new Set([...this.#places.map(({ id }) => id), ...reacting]);
   }
 
   /** The world with the robot at its start; whatever ran is over. */
@@ -297,6 +301,7 @@ export class Runner {
     try {
       const begun = await this.#worker().call('begin', this.studio.name, bytes, this.seed, language, stops);
       this.trail.clear();
+      this.flow.clear();
       this.heat = undefined;
       this.moments.clear();
       if (typeof begun !== 'string') {
@@ -347,13 +352,14 @@ export class Runner {
   }
 
   #take(seen: Seen): void {
-    const { progress, state, messages, printed, log, way, scene, moments, told } = seen;
+    const { progress, state, messages, printed, log, way, scene, moments, told, flow } = seen;
     for (let at = 0; at + 1 < way.length; at += 2) this.trail.step(0, way[at] ?? NaN, way[at + 1] ?? NaN);
     for (const moment of moments) this.moments.put(moment);
     this.beat += 1;
     if (scene) this.scene = shown(scene);
     this.state = state;
     this.told = told ?? this.told;
+    this.flow.hear(flow, state.ms);
     this.isHeld = progress === 'held';
     this.world = this.isPast ? this.#pastWorld(told?.ms ?? 0) : stateOf(state);
     const lines = [...printed, ...log].map((text): Message => ({
