@@ -183,7 +183,7 @@ test('by keys alone a program is drawn and run', async () => {
     .poll(() => properties.getByLabel('From the output').locator('option:checked').textContent())
     .toContain('OUT');
   await properties.getByLabel('To the input').selectOption({ label: 'M3: a whole number' });
-  await properties.getByRole('button', { name: 'Connect' }).press('Enter');
+  await properties.getByRole('button', { name: 'Connect', exact: true }).press('Enter');
   await expect.poll(() => edges(page).count()).toBe(1);
   expect(await edges(page).first().getAttribute('aria-label')).toContain('M3');
   expect(await barriers(page)).toEqual([]);

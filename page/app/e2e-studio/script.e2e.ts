@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
 import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site } from './site';
+import { SITE, Site } from './site';
 
 let look: Look;
 let site: Site;
@@ -155,7 +155,7 @@ test.each(HOSTILE)('%s ends, and the page says why', async (name, text, seen) =>
   await page.close();
 });
 
-const HAS_PYTHON = existsSync(join(process.env['STUDIO'] ?? '', 'python/pyodide.mjs'));
+const HAS_PYTHON = existsSync(join(SITE, 'python/pyodide.mjs'));
 
 test.skipIf(!HAS_PYTHON)('a program in Python runs, asks and fails at its line', async () => {
   const page = await opened();

@@ -77,7 +77,7 @@ async function opened(options = {}, world?: string): Promise<Page> {
   await page.locator('.svelte-flow__node').first().waitFor();
   const buffer = Buffer.from(await ahead(world));
   const chosen = { name: 'ahead.qrs', mimeType: 'application/zip', buffer };
-  await page.locator('input[type=file][accept=".qrs"]').setInputFiles(chosen);
+  await page.locator('input[type=file][accept^=".qrs"]').setInputFiles(chosen);
   await page.getByRole('heading', { name: 'ahead.qrs' }).waitFor();
   return page;
 }
