@@ -122,6 +122,19 @@ test('a drawing runs on the robot, is changed there while it runs, held, stepped
   await page.context().close();
 });
 
+test('a program of data flow on the robot shows its tokens', async () => {
+  const page = await look.open(`${robot.url}studio/`);
+  const file = join(import.meta.dirname, '../../../examples/dataflow/walls.flow');
+  await page.getByLabel('Open', { exact: true }).setInputFiles(file);
+  const robots = panel(page);
+  await robots.getByRole('button', { name: 'Send and run' }).click();
+  await robots.getByText(/runs\. The robot runs what is drawn\./).waitFor();
+  await page.locator('.svelte-flow__node .lit').first().waitFor();
+  await robots.getByRole('button', { name: 'Stop', exact: true }).click();
+  await robots.getByText('No program runs.').waitFor();
+  await page.context().close();
+});
+
 test('the page of the robot leads to its diagrams in the studio and back', async () => {
   const page = await look.open(`${robot.url}#program`);
   await page.getByRole('link', { name: 'Draw turn.qrs in the studio' }).click();

@@ -9,6 +9,7 @@ import type { News } from '../../link/words';
 import { Debugger } from '../../robot/debugger.svelte';
 import { Programs } from '../../robot/program.svelte';
 import { heard, language } from '../../words';
+import { Flow } from '../flow/tokens.svelte';
 import { orderOf, type Point } from '../run/point';
 import type { Studio } from '../studio.svelte';
 import { words } from './words';
@@ -36,6 +37,8 @@ export class Robot implements Taker {
   readonly #link: Link;
   readonly programs: Programs;
   readonly debugger: Debugger;
+  /** What a program of data flow tells of its blocks and ports. */
+  readonly #flow = new Flow();
   /** Breakpoints that it was given. */
   #points: ReadonlyMap<string, Point> = new Map();
   #patching = false;
@@ -91,9 +94,10 @@ export class Robot implements Taker {
   });
 
   /** Blocks in which its program is. */
-  readonly lit: ReadonlySet<string> = $derived(
-    this.#threads.length > 0 ? new Set(this.#threads.map(({ id }) => id)) : NOWHERE,
-  );
+  readonly lit: ReadonlySet<string> = $derived.by(() => {
+    if (this.studio.isFlow) return this.isOurs ? this.#flow.lit : NOWHERE;
+    return this.#threads.length > 0 ? new Set(this.#threads.map(({ id }) => id)) : NOWHERE;
+  });
 
   /** Diagrams in which its program is. */
   readonly diagrams: ReadonlySet<string> = $derived(
@@ -216,8 +220,11 @@ export class Robot implements Taker {
   /** Asks where the program is, again and again while it runs and somebody looks. Returns what ends that. */
   watch(): () => void {
     let isOver = false;
+    this.#flow.clear();
     const again = async (): Promise<void> => {
       if (!document.hidden) await this.debugger.look();
+      const { told } = this.debugger;
+      if (told && this.studio.isFlow) this.#flow.hear(told, told.ms ?? 0);
       if (!isOver) setTimeout(() => void again(), LOOK_MS);
     };
     void again();
