@@ -73,7 +73,7 @@ test('a drawing runs on the robot, is changed there while it runs, held, stepped
   const robots = panel(page);
   await robots.getByText('No program runs.').waitFor();
   await robots.getByRole('button', { name: 'Send and run' }).click();
-  await robots.getByText('turn.qrs runs. The robot runs what is drawn.').waitFor();
+  await robots.getByText('turn.qrs runs. The robot runs this version.').waitFor();
   await robots.getByRole('log').getByText('7', { exact: true }).first().waitFor();
   await eventually('the motor turns', () => power() === 40);
   await page.locator('.svelte-flow__node .lit').first().waitFor();
@@ -86,7 +86,7 @@ test('a drawing runs on the robot, is changed there while it runs, held, stepped
   await field.fill('55');
   await field.press('Enter');
   await eventually('the motor turns faster', () => power() === 55);
-  await robots.getByText('turn.qrs runs. The robot runs what is drawn.').waitFor();
+  await robots.getByText('turn.qrs runs. The robot runs this version.').waitFor();
 
   // A mistake is not sent.
   await field.fill('1 +');
@@ -95,7 +95,7 @@ test('a drawing runs on the robot, is changed there while it runs, held, stepped
   expect(await robots.getByRole('button', { name: 'Send and run' }).isDisabled()).toBe(true);
   expect(power()).toBe(55);
   await page.getByRole('button', { name: 'Take back' }).click();
-  await robots.getByText('turn.qrs runs. The robot runs what is drawn.').waitFor();
+  await robots.getByText('turn.qrs runs. The robot runs this version.').waitFor();
 
   // Held, and a step further.
   await robots.getByRole('button', { name: 'Pause' }).click();
@@ -128,10 +128,27 @@ test('a program of data flow on the robot shows its tokens', async () => {
   await page.getByLabel('Open', { exact: true }).setInputFiles(file);
   const robots = panel(page);
   await robots.getByRole('button', { name: 'Send and run' }).click();
-  await robots.getByText(/runs\. The robot runs what is drawn\./).waitFor();
+  await robots.getByText(/runs\. The robot runs this version\./).waitFor();
   await page.locator('.svelte-flow__node .lit').first().waitFor();
   await robots.getByRole('button', { name: 'Stop', exact: true }).click();
   await robots.getByText('No program runs.').waitFor();
+  await page.context().close();
+});
+
+test('a program with text is sent, runs and is stopped', async () => {
+  const page = await look.open(`${robot.url}studio/`);
+  const text = 'brick.motor("M3").setPower(30); while (true) { print("on"); script.wait(200); }\n';
+  const file = { name: 'turn.js', mimeType: 'text/javascript', buffer: Buffer.from(text) };
+  await page.getByLabel('Open', { exact: true }).setInputFiles(file);
+  const robots = panel(page);
+  await robots.getByRole('button', { name: 'Send and run' }).click();
+  await robots.getByText('turn.js runs. The robot runs this version.').waitFor();
+  await robots.getByRole('log').getByText('on', { exact: true }).first().waitFor();
+  await eventually('the motor turns', () => power() === 30);
+  expect(await robots.getByRole('button', { name: 'Pause' }).count()).toBe(0);
+  expect(await barriers(page)).toEqual([]);
+  await robots.getByRole('button', { name: 'Stop', exact: true }).click();
+  await eventually('the motor rests', () => power() === 0);
   await page.context().close();
 });
 
@@ -158,7 +175,7 @@ test('another browser that is in control keeps this one from sending, and not fr
   const robots = panel(second);
   await robots.getByText(/is in control\./).waitFor();
   expect(await robots.getByRole('button', { name: 'Send and run' }).isDisabled()).toBe(true);
-  await robots.getByText('turn.qrs runs, which is not what is drawn here.').waitFor();
+  await robots.getByText('turn.qrs runs, which is not what is open here.').waitFor();
   await robots.getByRole('button', { name: 'Stop', exact: true }).click();
   await eventually('the motor rests', () => power() === 0);
   await robots.getByRole('button', { name: 'Take control' }).click();

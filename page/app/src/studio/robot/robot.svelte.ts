@@ -11,7 +11,9 @@ import { Programs } from '../../robot/program.svelte';
 import { heard, language } from '../../words';
 import { Flow } from '../flow/tokens.svelte';
 import { orderOf, type Point } from '../run/point';
+import type { Script } from '../script/script.svelte';
 import type { Studio } from '../studio.svelte';
+import { type Source, sourceOf } from './source';
 import { words } from './words';
 
 /** How often it is asked where its program is, while somebody looks. */
@@ -30,9 +32,9 @@ export class Robot implements Taker {
   refusal = $state('');
   /** What is drawn goes to the robot while it runs there. */
   isLive = $state(true);
-  /** The name under which it has what is drawn here; empty if it has not. */
+  /** The name under which it has what is open here; empty if it has not. */
   sent = $state('');
-  /** The bytes that it has were made of these looks at the drawing. */
+  /** The version that it has. */
   #newest = $state.raw<unknown>(undefined);
   readonly #link: Link;
   readonly programs: Programs;
@@ -43,10 +45,12 @@ export class Robot implements Taker {
   #points: ReadonlyMap<string, Point> = new Map();
   #patching = false;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  #opened = -1;
+  /** Which program it has. */
+  #program = '';
 
   constructor(
     private readonly studio: Studio,
+    private readonly script: Script,
     address: string,
   ) {
     this.#link = new Link(address, this);
@@ -55,9 +59,9 @@ export class Robot implements Taker {
   }
 
   /** The robot that has given the page, if one has. */
-  static ofPage(studio: Studio): Robot | undefined {
+  static ofPage(studio: Studio, script: Script): Robot | undefined {
     if (!document.querySelector('meta[name=trik-robot]')) return undefined;
-    return new Robot(studio, `ws://${location.host}/socket?language=${language}`);
+    return new Robot(studio, script, `ws://${location.host}/socket?language=${language}`);
   }
 
   get isOthers(): boolean {
@@ -69,17 +73,20 @@ export class Robot implements Taker {
     return this.isConnected && !this.absence && this.mayDrive && !this.isOthers;
   }
 
-  /** What runs there is what is drawn here, perhaps in an older version. */
+  /** What is looked at, and sent. */
+  readonly source: Source = $derived.by(() => sourceOf(this.studio, this.script));
+
+  /** What runs there is what is open here, perhaps in an older version. */
   get isOurs(): boolean {
-    return this.sent !== '' && this.programs.running === this.sent && this.#opened === this.studio.opened;
+    return this.sent !== '' && this.programs.running === this.sent && this.#program === this.source.program;
   }
 
   get isNewest(): boolean {
-    return this.#newest === this.studio.looks;
+    return this.#newest === this.source.version;
   }
 
   get hasMistakes(): boolean {
-    return this.studio.looks.findings.some(({ level }) => level === 'error');
+    return this.source.hasMistakes;
   }
 
   /** The debugger holds it. */
@@ -89,7 +96,7 @@ export class Robot implements Taker {
   }
 
   #threads = $derived.by(() => {
-    const told = this.isOurs ? (this.debugger.told?.threads ?? []) : [];
+    const told = this.isOurs && this.source.isDrawn ? (this.debugger.told?.threads ?? []) : [];
     return told.flatMap(({ at, calls }) => [at, ...(calls ?? [])]).filter((at) => at !== undefined);
   });
 
@@ -104,16 +111,16 @@ export class Robot implements Taker {
     this.#threads.length > 0 ? new Set(this.#threads.map(({ diagram }) => diagram)) : NOWHERE,
   );
 
-  /** Sends what is drawn, and runs it. */
+  /** Sends what is open, and runs it. */
   async run(): Promise<void> {
     this.refusal = '';
-    const name = this.studio.name;
-    const { looks } = this.studio;
-    if (!(await this.#upload(name))) return;
+    const { source } = this;
+    const { name } = source;
+    if (!(await this.#upload(source))) return;
     this.sent = name;
-    this.#newest = looks;
-    this.#opened = this.studio.opened;
-    this.#points = this.studio.breakpoints;
+    this.#newest = source.version;
+    this.#program = source.program;
+    this.#points = source.isDrawn ? this.studio.breakpoints : new Map();
     if (this.#points.size === 0) {
       this.programs.run(name);
       return;
@@ -167,7 +174,8 @@ export class Robot implements Taker {
 
   /** What is drawn has changed: the program that runs becomes that, unless it has mistakes. */
   drawn(): void {
-    if (!this.isLive || !this.isOurs || this.isNewest || this.hasMistakes || !this.mayAct) return;
+    const isWanted = this.isLive && this.source.isDrawn && !this.isNewest && !this.hasMistakes;
+    if (!isWanted || !this.isOurs || !this.mayAct) return;
     clearTimeout(this.#timer);
     // While a number is being turned there is a new version at each step of it.
     this.#timer = setTimeout(() => void this.#patch(), DRAWN_AFTER_MS);
@@ -179,11 +187,11 @@ export class Robot implements Taker {
       return;
     }
     this.#patching = true;
-    const { looks } = this.studio;
+    const { source } = this;
     try {
-      if (await this.#upload(this.sent)) {
+      if (source.isDrawn && this.isOurs && (await this.#upload(source, this.sent))) {
         this.programs.patch(this.sent);
-        this.#newest = looks;
+        this.#newest = source.version;
       }
     } finally {
       this.#patching = false;
@@ -191,8 +199,8 @@ export class Robot implements Taker {
     this.drawn();
   }
 
-  async #upload(name: string): Promise<boolean> {
-    const bytes = await this.studio.bytes();
+  async #upload(source: Source, name = source.name): Promise<boolean> {
+    const bytes = await source.bytes();
     if (!bytes) return false;
     if (await this.programs.upload(new File([bytes.slice()], name))) return true;
     if (this.programs.refusal) this.refusal = words.notSent[this.programs.refusal];
@@ -214,7 +222,7 @@ export class Robot implements Taker {
   /** What was opened is what the robot has under this name. */
   isThere(name: string): void {
     this.sent = name;
-    this.#opened = this.studio.opened;
+    this.#program = this.source.program;
   }
 
   /** Asks where the program is, again and again while it runs and somebody looks. Returns what ends that. */
