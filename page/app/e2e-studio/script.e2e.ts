@@ -55,7 +55,7 @@ async function run(page: Page, name: string, text: string, world?: string): Prom
 
 async function opened(): Promise<Page> {
   const page = await look.open(site.url);
-  await page.getByRole('button', { name: '+ JavaScript' }).waitFor();
+  await page.getByRole('button', { name: 'New in JavaScript' }).waitFor();
   return page;
 }
 
@@ -196,7 +196,7 @@ test.skipIf(HAS_PYTHON)('without Python the studio says how it comes', async () 
 
 test('a program that is not saved is there when the page is opened again, and is saved as it is', async () => {
   const page = await opened();
-  await page.getByRole('button', { name: '+ JavaScript' }).click();
+  await page.getByRole('button', { name: 'New in JavaScript' }).click();
   await page.getByRole('heading', { name: 'program.js' }).waitFor();
   const editor = page.locator('.cm-content');
   await editor.click();

@@ -1,8 +1,8 @@
 // What the studio says of programs with text, in English.
 
 export const en = {
-  newPython: '+ Python',
-  newJavaScript: '+ JavaScript',
+  newPython: 'New in Python',
+  newJavaScript: 'New in JavaScript',
   newHint: 'A program with text',
   program: (name: string) => `Program ${name}`,
   tooLarge: (mib: number) => `it is larger than ${mib} MiB`,

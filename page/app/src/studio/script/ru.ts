@@ -3,8 +3,8 @@
 import type { Words } from './en';
 
 export const ru: Words = {
-  newPython: '+ Python',
-  newJavaScript: '+ JavaScript',
+  newPython: 'Новая на Python',
+  newJavaScript: 'Новая на JavaScript',
   newHint: 'Программа в виде текста',
   program: (name) => `Программа ${name}`,
   tooLarge: (mib) => `он больше ${mib} МиБ`,
