@@ -56,6 +56,7 @@ node web/test/dcml.mjs "$package" "$trik"
 
 if command -v chromium >/dev/null; then
     node web/test/browser.mjs "$package" "$made/ours/projects/d2_motor_stuck_wheels.qrs" accomplished
+    node web/test/everywhere.mjs "$package" "${places[@]}"
 elif [ "${TRIK_REQUIRE_TOOLS:-}" = 1 ]; then
     echo "the browser would be skipped: no chromium" >&2
     exit 1

@@ -195,6 +195,15 @@ impl Project {
         self.answer(options, |options| self.0.show(options))
     }
 
+    /// The sentences of `show` line by line, with the blocks that each tells of.
+    #[wasm_bindgen(unchecked_return_type = "Answer<OutlineLine[]>")]
+    pub fn outline(
+        &self,
+        #[wasm_bindgen(unchecked_optional_param_type = "OutlineOptions")] options: &JsValue,
+    ) -> JsValue {
+        self.answer(options, |options| self.0.outline(options))
+    }
+
     /// The program in a language with text, as `trik gen` writes it.
     #[wasm_bindgen(unchecked_return_type = "Answer<Generated>")]
     pub fn generate(

@@ -145,6 +145,7 @@ fn of_sheet(name: &str, fields: &mut Fields) -> Result<Option<Change>, Failure> 
                 Some(block) => drawn(block)?,
                 None => return Err(wrong("block")),
             },
+            guard: fields.maybe_text("guard")?.unwrap_or_default(),
             ports: fields.ports()?,
         },
         "remove" => Change::Remove {

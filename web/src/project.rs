@@ -8,7 +8,8 @@ use crate::words;
 use lang_dataflow::generate::Target;
 use lang_dataflow::show::{Extent, Looks};
 use lang_diagram::generate::{self, Language};
-use lang_diagram::show::{outline::outline, picture::picture};
+use lang_diagram::show::outline::{self, outline};
+use lang_diagram::show::picture::picture;
 use lang_text::near::did_you_mean;
 use lang_text::problem::{Locale, Problem};
 use serde_json::{Value, json};
@@ -189,6 +190,39 @@ impl Project {
             }
         });
         (shown.map(Value::String), locale)
+    }
+
+    /// The sentences of `show` line by line, each with the ids of the blocks that it tells of. Options: `locale` and `diagram`.
+    pub fn outline(&self, options: &str) -> Answer<Value> {
+        let mut locale = Locale::default();
+        let shown = Options::read(options).and_then(|mut options| {
+            locale = options.locale()?;
+            let name = options.text("diagram")?;
+            options.end()?;
+            let at = self.chosen(name.as_deref())?;
+            match &self.program {
+                Program::Diagram(opened) => {
+                    let mut project = opened.project.clone();
+                    // The program begins there.
+                    project.main = Some(at);
+                    let lines = outline::lines(&project, locale).map_err(Failure::Program)?;
+                    let line = |one: &outline::Line| json!({"text": one.text, "blocks": one.blocks});
+                    Ok(lines.iter().map(line).collect())
+                }
+                Program::Flow(flow, _) | Program::Text(flow) => {
+                    let extent = Extent {
+                        with_defaults: false,
+                        from: name.is_some().then_some(at),
+                    };
+                    let lines = lang_dataflow::show::lines(&flow.project, extent, locale);
+                    let line = |one: &lang_dataflow::show::Line| {
+                        json!({"text": one.text, "blocks": one.block.as_slice()})
+                    };
+                    Ok(lines.iter().map(line).collect())
+                }
+            }
+        });
+        (shown, locale)
     }
 
     /// The program in a language with text, as `trik gen` writes it, with notes. Options: `locale` and `goto`.

@@ -242,6 +242,10 @@ impl Script {
             if self.course.progress() == OVER {
                 return OVER.to_owned();
             }
+            // It is held until it asks something.
+            if self.program.open.is_some() && self.program.question.is_none() {
+                return self.told(Err(io::Error::other("nothing was asked")));
+            }
             // A held program goes on in the same tick, which then is not a new one.
             if self.program.open.is_none() {
                 let Some(fewer) = left.checked_sub(1) else {

@@ -64,6 +64,19 @@ export interface GenerateOptions {
   goto?: boolean;
 }
 
+export interface OutlineOptions {
+  locale?: Locale;
+  /** By its name; without it the main one. */
+  diagram?: string;
+}
+
+/** A sentence with its indentation. */
+export interface OutlineLine {
+  text: string;
+  /** Ids of the blocks that it tells of. */
+  blocks: string[];
+}
+
 /** Of a data-flow program `lua` and `c`, which become converters of trikfs. */
 export type Language = 'python' | 'javascript' | 'lua' | 'c' | 'pascal' | 'fsharp';
 
@@ -238,7 +251,7 @@ export interface PieceBlock {
 export type Change =
   | ({ do: 'add'; diagram: string } & Piece)
   /** `ports` are those of the block: where the link ends, and where the new one begins. */
-  | { do: 'insert'; link: string; block: PieceBlock; ports?: [number, number] }
+  | { do: 'insert'; link: string; block: PieceBlock; guard?: string; ports?: [number, number] }
   | { do: 'remove'; ids: string[] }
   | { do: 'move'; places: { id: string; at: [number, number] }[] }
   | { do: 'connect'; from: string; to: string; guard?: string; ports?: Ports }

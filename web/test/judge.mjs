@@ -10,28 +10,12 @@ import { cpus, tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { check, lint, printed } from './native.mjs';
+import { recorded } from './recorded.mjs';
 
 const [folder, trik, ...places] = process.argv.slice(2);
 const studio = await import(join(resolve(folder), 'node.js'));
 
 const LANGUAGES = ['python', 'javascript', 'lua', 'c', 'pascal', 'fsharp'];
-
-/** Every recorded run below a folder. */
-function recorded(place) {
-  const names = readdirSync(join(place, 'oracle')).filter((name) => name.endsWith('.json'));
-  return names.sort().map((name) => {
-    const run = JSON.parse(readFileSync(join(place, 'oracle', name), 'utf8'));
-    const poses = run.poses_100ms;
-    const end = poses.length ? poses[poses.length - 1][0] : 0;
-    return {
-      name: `${place}: ${name}`,
-      project: join(place, run.project),
-      field: run.field ? join(place, run.field) : undefined,
-      // One that does not end by itself was recorded for a while.
-      modelSeconds: run.ends_by_itself ? undefined : end / 1000,
-    };
-  });
-}
 
 const bytes = (path) => new Uint8Array(readFileSync(path));
 

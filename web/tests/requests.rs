@@ -82,6 +82,15 @@ fn a_project_is_judged_and_says_what_it_is() {
     assert!(nearest["gap"].as_f64().unwrap() > 1.0, "{whole}");
     let text = project.show("").0.unwrap();
     assert!(text.as_str().unwrap().contains("1500"), "{text}");
+    let lines = project.outline("").0.unwrap();
+    let all: Vec<&str> = (lines.as_array().unwrap().iter())
+        .map(|line| line["text"].as_str().unwrap())
+        .collect();
+    assert_eq!(all.join("\n") + "\n", text.as_str().unwrap());
+    let timer = lines.as_array().unwrap().iter();
+    let mut timer = timer.filter(|line| line["text"].as_str().unwrap().contains("1500"));
+    let block = timer.next().unwrap()["blocks"][0].as_str().unwrap();
+    assert!(block.contains("/Timer/"), "{block}");
     let code = project.generate("python", "").0.unwrap();
     assert!(code["text"].as_str().unwrap().contains("setPower(100)"));
 }

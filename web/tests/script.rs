@@ -40,6 +40,8 @@ fn a_program_drives_the_world_by_its_questions() {
     }
     assert!(script.outcome().is_none());
     assert_eq!(script.ask("print", "on my way\n", MANY), "ok:0:");
+    // Nothing waits for an answer: that is said, and not waited for.
+    assert_eq!(script.go_on(MANY), "no:0:5:nothing was asked");
     // The answer comes when the time has: two pictures of 20 ms, and then the rest.
     assert_eq!(script.ask("wait", "35", 2), "later");
     assert_eq!(script.go_on(1), "later");

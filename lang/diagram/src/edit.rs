@@ -44,6 +44,8 @@ pub enum Change {
         link: String,
         /// The block.
         block: Drawn,
+        /// What stands at the new link.
+        guard: String,
         /// Of a language with ports where the link ends at it, and where the new one begins.
         ports: Option<(u8, u8)>,
     },

@@ -93,7 +93,7 @@ test('projects of a folder are opened by a click and saved where they are', asyn
   // What is not saved is asked for before another one is opened.
   await addTimer(page);
   await button(page, 'two.qrs').click();
-  await button(page, 'Give up what is not saved').click();
+  await button(page, 'Discard the changes').click();
   await page.getByRole('heading', { name: 'two.qrs' }).waitFor();
   expect(await node(page, 'Timer').count()).toBe(0);
   await button(page, 'broken.qrs').click();

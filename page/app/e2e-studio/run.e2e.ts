@@ -102,7 +102,7 @@ test('a run is stepped, looked back at, and goes on from the present as if nothi
   const page = await line();
   await node(page, 'Timer').click();
   await button(page, 'Breakpoint').click();
-  await fill(page, 'From this time on', '100');
+  await fill(page, 'Starting with hit number', '100');
   await button(page, 'Run').click();
   await page.getByText('Held, 1.02 s: a breakpoint').waitFor();
   await button(page, 'Step over').click();

@@ -157,6 +157,27 @@ test.each(HOSTILE)('%s ends, and the page says why', async (name, text, seen) =>
 
 const HAS_PYTHON = existsSync(join(SITE, 'python/pyodide.mjs'));
 
+test('what a program has done before it computes for ever is seen', async () => {
+  const page = await opened();
+  await run(page, 'before.js', 'print("before");\nscript.wait(100);\nprint("after");\nwhile (true) {}\n');
+  await page.getByText('computed for 10 s').first().waitFor();
+  for (const line of ['before', 'after'])
+    await page.locator('.lines li').filter({ hasText: line }).first().waitFor();
+  await page.close();
+});
+
+test('a program does not write its own verdict, and strict ones fail at their line', async () => {
+  const page = await opened();
+  const forged =
+    'var p = JSON.parse;\nJSON.parse = function (t) { var v = p(t); if (v && v.verdict) v.totalScore = 9999; return v; };\nscript.wait(50);\n';
+  await run(page, 'forged.js', forged);
+  await page.locator('.verdict').waitFor();
+  expect(await page.locator('.verdict').innerText()).not.toContain('9999');
+  await run(page, 'strict.js', '"use strict";\nvar a = 1;\nvar b = 010;\n');
+  await page.getByRole('button', { name: 'Line 3' }).waitFor();
+  await page.close();
+});
+
 test.skipIf(!HAS_PYTHON)('a program in Python runs, asks and fails at its line', async () => {
   const page = await opened();
   const drive = `name = input('who? ')\nprint('hello', name)\nbrick.motor(M3).setPower(100)\nbrick.motor(M4).setPower(100)\nscript.wait(5000)\n`;

@@ -126,7 +126,7 @@ impl Listing {
     /// diagram it means a block of the main one first.
     pub(crate) fn of_flow(project: &Flow, locale: Locale) -> Self {
         let mut listing = Self::default();
-        for line in show::lines(project, locale) {
+        for line in show::lines(project, show::Extent::default(), locale) {
             listing.lines.push(Line {
                 text: line.text,
                 blocks: line.block.iter().map(|id| id.as_str().into()).collect(),

@@ -198,6 +198,7 @@ fn a_block_goes_into_a_link_by_two_ports() {
     let insert = |ports| Change::Insert {
         link: link.clone(),
         block: Drawn::of("DFWaitBlock", (400.0, 0.0)),
+        guard: String::new(),
         ports,
     };
     assert!(editor.apply(&insert(None)).is_err());

@@ -142,6 +142,7 @@ fn change(choices: &mut Choices<'_>, ids: &Ids) -> Change {
         9 => Change::Insert {
             link: choices.id(&ids.links),
             block: Drawn::of("DFWaitBlock", choices.place()),
+            guard: String::new(),
             ports: choices.ports(),
         },
         10 => Change::Call {

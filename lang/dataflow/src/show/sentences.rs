@@ -11,7 +11,7 @@ use lang_text::problem::Locale;
 /// The program in words for pupils: diagrams, and in each its blocks in the order of the diagram. A line below a block is
 /// an edge that begins there.
 pub fn sentences(project: &Project, extent: Extent, locale: Locale) -> String {
-    text_of(written(project, extent, locale))
+    text_of(lines(project, extent, locale))
 }
 
 /// How much of a program is said.
@@ -40,11 +40,7 @@ pub struct Line {
 }
 
 /// The sentences line by line.
-pub fn lines(project: &Project, locale: Locale) -> Vec<Line> {
-    written(project, Extent::default(), locale)
-}
-
-fn written(project: &Project, extent: Extent, locale: Locale) -> Vec<Line> {
+pub fn lines(project: &Project, extent: Extent, locale: Locale) -> Vec<Line> {
     let count = project.diagrams.len();
     let mut writer = Writer {
         project,

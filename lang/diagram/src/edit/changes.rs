@@ -19,7 +19,12 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String>, Problem> {
     match change {
         Change::Add { diagram, piece } => return piece::add(pen, diagram, piece),
-        Change::Insert { link, block, ports } => return insert(pen, link, block, *ports),
+        Change::Insert {
+            link,
+            block,
+            guard,
+            ports,
+        } => return insert(pen, link, block, guard, *ports),
         Change::Remove { ids } => remove(pen, ids)?,
         Change::Move { places } => move_to(pen, places)?,
         Change::Connect {
@@ -121,6 +126,7 @@ fn insert(
     pen: &mut Pen<'_>,
     id: &str,
     drawn: &Drawn,
+    guard: &str,
     ports: Option<(u8, u8)>,
 ) -> Result<Vec<String>, Problem> {
     let object = link(pen, id)?;
@@ -144,7 +150,7 @@ fn insert(
         (Some(_), None) | (None, Some(_) | None) => (ports, ports),
     };
     reconnect(pen, id, (&from, &middle), first)?;
-    new.push(connect(pen, (&middle, &to), "", second)?);
+    new.push(connect(pen, (&middle, &to), guard, second)?);
     Ok(new)
 }
 

@@ -360,6 +360,7 @@ fn a_block_is_put_into_a_link_and_taken_out_of_it_by_one_step() {
     let change = Change::Insert {
         link,
         block,
+        guard: String::new(),
         ports: None,
     };
     assert_eq!(editor.apply(&change).unwrap().len(), 2);

@@ -115,6 +115,7 @@ fn change(choices: &mut Choices<'_>, editor: &Editor) -> Change {
         13 => Change::Insert {
             link: choices.id(&ids.links),
             block: Drawn::of("Timer", choices.place()),
+            guard: String::new(),
             ports: None,
         },
         kind @ 0..=7 => of_sheet(choices, &ids, kind),

@@ -14,6 +14,7 @@ export const ru: Words = {
   blank: 'Новый',
   open: 'Открыть',
   save: 'Сохранить',
+  worldless: 'в проекте нет мира',
   why: 'Почему',
   rename: 'Переименовать',
   link: 'Скопировать ссылку',

@@ -36,7 +36,7 @@ export type Part = 'program' | 'world' | 'rules';
 /** The part of a save in which findings of its world are. */
 const WORLD_PART = 'worldModel';
 
-const NONE: Looks = { findings: [], names: [], text: '', isWritten: true };
+const NONE: Looks = { findings: [], names: [], lines: [], isWritten: true };
 
 export class Studio {
   #palettes = $state.raw<Record<DrawnLanguage, PaletteBlock[]>>({ diagram: [], dataflow: [] });
@@ -268,7 +268,7 @@ export class Studio {
     const ports = link ? this.#portsInto(link, kind) : undefined;
     const change: Change =
       link && (ports || !this.isFlow)
-        ? { do: 'insert', link, block, ...(ports ? { ports } : {}) }
+        ? { do: 'insert', link, block, ...(ports ? { ports } : { guard: guardOfNext(kind, []) }) }
         : { do: 'add', diagram: this.diagram, blocks: [block], links: [] };
     const made = await this.apply(change);
     if (made.length > 0) this.chosen = new Set(made.slice(0, 1));
@@ -392,8 +392,17 @@ export class Studio {
     this.chosen = new Set();
   }
 
-  /** Puts the project into another world, if that is one. */
-  async loadWorld(name: string, text: string): Promise<void> {
+  /** Puts the project into the world of a file: of a world, or of a project with one. */
+  async loadWorld(file: File): Promise<void> {
+    const { name } = file;
+    const read = name.endsWith('.qrs')
+      ? await this.#drafts.call('worldOf', name, new Uint8Array(await file.arrayBuffer()))
+      : { world: await file.text() };
+    if (typeof read === 'string' || read.world === '') {
+      this.refusal = words.notOpened(name, typeof read === 'string' ? read : words.worldless);
+      return;
+    }
+    const { world: text } = read;
     const why = await this.#drafts.call('wrongWith', text);
     if (why) {
       this.refusal = words.notOpened(name, why);
@@ -442,6 +451,7 @@ export class Studio {
     this.chosen = new Set();
     this.breakpoints = new Map();
     this.drawing = drawing;
+    this.part = 'program';
     this.name = drawing.state.name;
     this.isSaved = true;
     this.opened += 1;

@@ -18,6 +18,10 @@ export function guardsOf(kind: string): string[] | undefined {
 
 /** What the next link of a block has for a guard, after those that leave it. */
 export function guardOfNext(kind: string, leaving: readonly DrawnLink[]): string {
+  const guards = GUARDS[kind] ?? [];
   const taken = new Set(leaving.map(({ guard }) => guard.toLowerCase()));
-  return GUARDS[kind]?.find((guard) => !taken.has(guard)) ?? '';
+  // Of two branches the one without a word is the other one: it was drawn first.
+  if (guards.length === 2 && taken.has('') && !guards.some((guard) => taken.has(guard)))
+    return guards[1] ?? '';
+  return guards.find((guard) => !taken.has(guard)) ?? '';
 }

@@ -10,6 +10,7 @@ import type {
   Language,
   Locale,
   NameFacts,
+  OutlineLine,
   PaletteBlock,
   Scene,
   ScriptState,
@@ -27,8 +28,8 @@ export interface Drawing {
 export interface Looks {
   findings: Finding[];
   names: NameFacts[];
-  /** The program as text, or why it cannot be written. */
-  text: string;
+  /** The program as text, or why it cannot be written: line by line, with the blocks that each tells of, as far as these are known. */
+  lines: OutlineLine[];
   isWritten: boolean;
 }
 
@@ -155,16 +156,21 @@ const calls = {
   look(wanted: Language | 'sentences' | 'source', diagram: string): Looks {
     const findings = named(must().lint(locale));
     const names = must().names();
+    const looks = (isWritten: boolean, lines: OutlineLine[]) => ({ findings, names, isWritten, lines });
+    const wrong = (problems: Finding[]) => looks(false, [{ text: said(named(problems)), blocks: [] }]);
     const project = must().project({ locale });
-    if (!project.ok) return { findings, names, text: said(named(project.error.problems)), isWritten: false };
+    if (!project.ok) return wrong(project.error.problems);
     const shown =
-      wanted === 'sentences' || wanted === 'source'
-        ? project.value.show({ locale, diagram, source: wanted === 'source' })
-        : project.value.generate(wanted, { locale });
+      wanted === 'sentences'
+        ? project.value.outline({ locale, diagram })
+        : wanted === 'source'
+          ? project.value.show({ locale, diagram, source: true })
+          : project.value.generate(wanted, { locale });
     project.value.free();
-    if (!shown.ok) return { findings, names, text: said(named(shown.error.problems)), isWritten: false };
-    const text = typeof shown.value === 'string' ? shown.value : shown.value.text;
-    return { findings, names, text, isWritten: true };
+    if (!shown.ok) return wrong(shown.error.problems);
+    const { value } = shown;
+    if (Array.isArray(value)) return looks(true, value);
+    return looks(true, [{ text: typeof value === 'string' ? value : value.text, blocks: [] }]);
   },
 };
 

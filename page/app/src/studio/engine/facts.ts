@@ -19,6 +19,7 @@ export type {
   Locale,
   Message,
   NameFacts,
+  OutlineLine,
   PaletteBlock,
   Parameter,
   Piece,

@@ -18,6 +18,8 @@ import type {
   LintOptions,
   Locale,
   NameFacts,
+  OutlineLine,
+  OutlineOptions,
   News,
   OpenOptions,
   PaletteBlock,
@@ -59,6 +61,7 @@ export interface Draft {
 export interface Project {
   about(): About;
   show(options?: ShowOptions): Answer<string>;
+  outline(options?: OutlineOptions): Answer<OutlineLine[]>;
   generate(language: Language, options?: GenerateOptions): Answer<Generated>;
   judge(options?: RunOptions): Answer<Judged>;
   run(options?: RunOptions): Answer<Run>;

@@ -32,7 +32,7 @@ export const en = {
     condition: 'the condition of a breakpoint cannot be computed',
     error: 'an error',
     oldest: 'the first moment that is kept',
-    past: 'at this time',
+    past: 'at the moment you chose',
   } as Record<string, string>,
   changed: (name: string, was: string, is: string) =>
     was ? `${name} was ${was} and is ${is}` : `${name} has become ${is}`,
@@ -53,7 +53,7 @@ export const en = {
 
   condition: 'Only if',
   conditionHint: 'An expression, as n > 3; empty: always',
-  hits: 'From this time on',
+  hits: 'Starting with hit number',
   hitsHint: 'It holds at the first, second, ... time that the program comes here',
   log: 'Write and go on',
   logHint: 'A text, with values in braces, as n is {n}; empty: it holds',

@@ -29,6 +29,8 @@ const PICTURE_TICKS = 2;
 const TICK_MS = 10;
 /** What is told of what a program prints: lines, and characters of each. The judge itself keeps less. */
 const LINES_MAX = 10_000;
+/** Lines that are told at once, and not with the next picture. */
+const LINES_AT_ONCE = 50;
 const LINE_LENGTH_MAX = 1000;
 /** When a program begins, before its own time does. */
 const BEGIN_MS = -30;
@@ -71,6 +73,8 @@ export class Link {
     if (word === 'print' && this.#lines < LINES_MAX) {
       this.#lines += 1;
       this.printed.push(text.replace(/\n$/, '').slice(0, LINE_LENGTH_MAX));
+      // It may be the last thing that the program does.
+      if (this.#lines <= LINES_AT_ONCE) this.#look();
     }
     if (this.#left <= 0) this.#picture();
     return told;

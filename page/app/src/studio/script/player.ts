@@ -27,12 +27,18 @@ function workerOf(text: string): Worker {
 }
 
 /** What is wrong with the text of a program, with its line; empty if it can be run. */
-function mistakes(text: string): Promise<string> {
+async function mistakes(text: string): Promise<string> {
+  const alone = await mistakesOf((word) => `throw ${word};${text}\n`);
+  // A directive counts where it stands first, as in the function that the text becomes.
+  return alone || mistakesOf((word) => `throw ${word};(function(){${text}\n});`);
+}
+
+function mistakesOf(made: (word: string) => string): Promise<string> {
   // It ends with a word that nobody else knows before it does anything: any other end is a mistake of the text. What can stand
   // alone can stand in a function as well, and nothing of it outside of that.
   const word = `parsed ${[...crypto.getRandomValues(new Uint32Array(4))].join('-')}`;
   return new Promise((done) => {
-    const worker = workerOf(`throw ${JSON.stringify(word)};${text}\n`);
+    const worker = workerOf(made(JSON.stringify(word)));
     worker.addEventListener('error', (event) => {
       event.preventDefault();
       worker.terminate();

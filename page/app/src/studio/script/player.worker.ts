@@ -49,6 +49,8 @@ export type PlayerNews =
 /** Pictures that are told at once, and how long they may wait for that. */
 const TOGETHER = 50;
 const TOGETHER_MS = 100;
+/** Packets of one picture: what a program does before it computes for ever is seen. */
+const ALONE = 100;
 const SCENE_EVERY = 10;
 /** Calls in a stack. */
 const CALLS = 50;
@@ -66,6 +68,7 @@ class Watch {
   #waiting: Picture[] = [];
   #last = clock();
   #looks = 0;
+  #packets = 0;
   #scene = '';
   #isOver = false;
 
@@ -88,9 +91,11 @@ class Watch {
     }
     this.#looks += 1;
     this.#waiting.push({ state: script.state(), scene, messages, printed });
-    const isFull = this.#waiting.length >= TOGETHER || clock() - this.#last > TOGETHER_MS;
+    const isFull =
+      this.#packets < ALONE || this.#waiting.length >= TOGETHER || clock() - this.#last > TOGETHER_MS;
     if (!isFull && !isOver) return;
     post({ kind: 'pictures', pictures: this.#waiting });
+    this.#packets += 1;
     this.#waiting = [];
     this.#last = clock();
     if (isOver) post({ kind: 'over', outcome: script.outcome(), remarks: script.remarks() });
@@ -109,6 +114,8 @@ async function runJavaScript(link: Link, text: string): Promise<void> {
     lost ??= { reason: event.reason };
   });
   leaveLanguage();
+  // What the judge tells comes through it.
+  Object.freeze(JSON);
   (Error as { stackTraceLimit?: number }).stackTraceLimit = CALLS;
   try {
     const made = robot(link, text, [base, codes, robotScript, talk]);

@@ -118,7 +118,10 @@ export class Script {
   }
 
   async blank(kind: ScriptLanguage): Promise<void> {
-    await this.open(words.untitled[kind], new TextEncoder().encode(words.examples[kind]));
+    // The world that was loaded for the program before stays.
+    const [world, worldName] = this.worldName ? [this.#world, this.worldName] : [undefined, ''];
+    await this.open(words.untitled[kind], new TextEncoder().encode(words.examples[kind]), world);
+    this.worldName = worldName;
   }
 
   /** A diagram is drawn again. */
@@ -217,6 +220,8 @@ export class Script {
     this.#clear();
     this.isRunning = true;
     this.isShowing = true;
+    // A program that takes all memory ends the page with it.
+    await this.#keepNow();
     const folder = new URL(PYTHON, location.href).href;
     if (this.language === 'py') {
       this.isLoading = true;

@@ -127,7 +127,7 @@ const faults: Record<WorldFault['fault'], string> = {
 
 const tags: Record<RuleTag, string> = {
   timelimit: 'Time limit',
-  constraint: 'Must always be true',
+  constraint: 'Fails if not true',
   event: 'Event',
   init: 'At the start',
   condition: 'Condition',
@@ -185,7 +185,7 @@ const ruleAttributes: Record<string, string> = {
   glue: 'True if',
   objectId: 'Thing',
   regionId: 'Region',
-  objectPoint: 'What of it',
+  objectPoint: 'Which part of it',
   timeout: 'Time',
   forceDropOnTimeout: 'Only one chance',
   message: 'Message',
@@ -275,7 +275,7 @@ export const en = {
   asText: 'As text',
   how: 'Form of the rules',
   addRule: 'Add a rule',
-  emptyRule: 'Of its own',
+  emptyRule: 'Other rules',
   region: 'Region',
   noRegions: 'Draw a region in the world first.',
   recipes,

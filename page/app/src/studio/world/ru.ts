@@ -184,7 +184,7 @@ export const ru: Words = {
   },
   tags: {
     timelimit: 'Предел времени',
-    constraint: 'Должно быть верно всегда',
+    constraint: 'Провал, если неверно',
     event: 'Событие',
     init: 'На старте',
     condition: 'Условие',
