@@ -94,6 +94,18 @@ async function spots(page: Page): Promise<(x: number, y: number) => [number, num
   return (x, y) => [middle(left) + (x + 30) * scale, down + (y - 30) * scale];
 }
 
+/** Where the middle of the world is seen, once lines above and below the sheet have come and gone. */
+async function settled(page: Page): Promise<[number, number]> {
+  let before: [number, number] = [0, 0];
+  return eventually('the sheet stands still', async () => {
+    await page.waitForTimeout(300);
+    const [x, y] = (await spots(page))(0, 0);
+    const isSame = x === before[0] && y === before[1];
+    before = [x, y];
+    return isSame ? before : undefined;
+  });
+}
+
 async function stroke(page: Page, from: [number, number], to: [number, number]): Promise<void> {
   await page.mouse.move(...from);
   await page.mouse.down();
@@ -112,11 +124,12 @@ test('a world, its rules and a run, with the mouse', async () => {
 
   await button(page, 'Add: Wall').click();
   await stroke(page, at(20, 60), at(80, 60));
-  const sheet = page.getByRole('application', { name: 'The world to be edited' });
-  await sheet.getByRole('button', { name: 'Nearer' }).click();
-  const near = (await spots(page))(0, 0);
   // A box without a height is not seen as one.
   await item(page, 'wall 4').waitFor({ state: 'attached' });
+  await page.getByText('not saved').waitFor();
+  const sheet = page.getByRole('application', { name: 'The world to be edited' });
+  await sheet.getByRole('button', { name: 'Nearer' }).click();
+  const near = await settled(page);
   const wall = page.getByLabel('Properties of the thing').getByLabel('Begin: x');
   await wall.fill('-200');
   await wall.press('Enter');
@@ -124,7 +137,7 @@ test('a world, its rules and a run, with the mouse', async () => {
   await wall.fill('20');
   await wall.press('Enter');
   // What is looked at stays where it is.
-  expect((await spots(page))(0, 0)).toEqual(near);
+  expect(await settled(page)).toEqual(near);
   await sheet.getByRole('button', { name: 'Farther' }).click();
   await button(page, 'Add: Region').click();
   await stroke(page, at(90, 10), at(130, 50));
@@ -327,7 +340,7 @@ test('thousands of things of a stranger, and names with scripts, do no harm', as
   await button(page, 'World').click();
   await button(page, 'Make a world').click();
   await item(page, 'robot 0').waitFor();
-  await page.locator('input[type=file][accept=".xml"]').setInputFiles({
+  await page.getByLabel('Load a world', { exact: true }).setInputFiles({
     name: 'evil.xml',
     mimeType: 'text/xml',
     buffer: Buffer.from(
