@@ -7,6 +7,8 @@ import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join, normalize } from 'node:path';
 
+/** How often a folder is tried to be removed, ten times in a second. */
+const ATTEMPTS = 100;
 const TYPES = { js: 'text/javascript', wasm: 'application/wasm', html: 'text/html' };
 
 const PAGE = `<!doctype html><title>package</title><p>nothing</p><script type="module">
@@ -56,7 +58,19 @@ export async function inWorker({ folder, worker, file, longest_ms, chromium = 'c
     await gone;
     server.close();
     server.closeAllConnections();
-    // Its helpers write for a while after it has gone.
-    rmSync(profile, { recursive: true, force: true, maxRetries: 20 });
+    await removed(profile);
+  }
+}
+
+/** Its helpers write for a while after it has gone. */
+async function removed(profile) {
+  for (let attempt = 0; ; attempt += 1) {
+    try {
+      rmSync(profile, { recursive: true, force: true });
+      return;
+    } catch (error) {
+      if (attempt === ATTEMPTS) throw error;
+      await new Promise((again) => { setTimeout(again, 100); });
+    }
   }
 }
