@@ -62,7 +62,7 @@ async function opened(buffer: Buffer): Promise<Page> {
 const list = (page: Page) => page.getByRole('region', { name: 'Mistakes' });
 const found = (page: Page) => list(page).locator('li').count();
 
-/** Mends by this button; so many mistakes are left then, and as many as before once it is taken back in so many steps. */
+/** Clicks on a mend: it leaves `left` mistakes, and `steps` steps back bring all of them again. */
 async function mend(page: Page, title: string, left: number, steps: number): Promise<void> {
   const button = list(page).getByRole('button', { name: title, exact: true }).first();
   await button.waitFor();

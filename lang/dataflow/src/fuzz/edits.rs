@@ -7,6 +7,7 @@ use crate::edit::{CALL, DataFlow};
 use crate::project::Project;
 use crate::{read, text};
 use lang_diagram::edit::{Change, Drawn, Editor, Piece, Wire};
+use lang_diagram::fuzz::Choices;
 use lang_diagram::objects::Object;
 use lang_diagram::project::DiagramKind;
 use lang_diagram::read::{Meta, Save};
@@ -20,41 +21,6 @@ const CHANGES: usize = 200;
 const TEXTS: [&str; 9] = [
     "", "1", "latest", "16", "turn", "<&\">'", "\u{1}", "\u{44f}", "I0 + 1",
 ];
-
-/// Bytes as numbers, 0 when they are used up.
-struct Choices<'a>(&'a [u8]);
-
-impl Choices<'_> {
-    fn below(&mut self, most: usize) -> usize {
-        let Some((first, rest)) = self.0.split_first() else {
-            return 0;
-        };
-        self.0 = rest;
-        usize::from(*first) % most.max(1)
-    }
-
-    fn text(&mut self) -> String {
-        TEXTS[self.below(TEXTS.len())].to_owned()
-    }
-
-    /// One of these ids, or one that is not there.
-    fn id(&mut self, ids: &[String]) -> String {
-        let at = self.below(ids.len() + 1);
-        ids.get(at).map_or("qrm:/a/b/c/{d}", |id| id).to_owned()
-    }
-
-    fn place(&mut self) -> (f64, f64) {
-        match self.below(40) {
-            0 => (f64::NAN, 0.0),
-            x => (x as f64 * 20.0, self.below(40) as f64 * -20.0),
-        }
-    }
-
-    fn ports(&mut self) -> Option<(u8, u8)> {
-        let ports = (self.below(15) as u8, self.below(15) as u8);
-        (self.below(20) != 0).then_some(ports)
-    }
-}
 
 /// Ids of diagrams, blocks and links.
 #[derive(Default)]
@@ -186,10 +152,10 @@ pub fn edits(bytes: &[u8]) {
 /// Bytes as changes of a project: each is whole or not at all, is taken back and made again without a trace, and leaves a
 /// save that is written and read as the same.
 pub fn edits_of(mut editor: Editor, bytes: &[u8]) {
-    let mut choices = Choices(bytes);
+    let mut choices = Choices::new(bytes, &TEXTS);
     let first = editor.save().clone();
     for _ in 0..CHANGES {
-        if choices.0.is_empty() {
+        if choices.is_over() {
             break;
         }
         let ids = ids(&read::project(editor.save()).0);

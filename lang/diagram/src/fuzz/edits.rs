@@ -2,6 +2,7 @@
 //!
 //! Owns the small language of bytes that says changes, so that nearly all bytes mean one.
 
+use super::choices::Choices;
 use crate::blocks;
 use crate::edit::{Change, Drawn, Editor, Piece, Wire};
 use crate::objects::Object;
@@ -26,37 +27,6 @@ const TEXTS: [&str; 9] = [
     "\u{44f}",
     "x = x + 1",
 ];
-
-/// Bytes as numbers, 0 when they are used up.
-struct Choices<'a>(&'a [u8]);
-
-impl Choices<'_> {
-    fn below(&mut self, most: usize) -> usize {
-        let Some((first, rest)) = self.0.split_first() else {
-            return 0;
-        };
-        self.0 = rest;
-        usize::from(*first) % most.max(1)
-    }
-
-    fn text(&mut self) -> String {
-        TEXTS[self.below(TEXTS.len())].to_owned()
-    }
-
-    /// One of these ids, or one that is not there.
-    fn id(&mut self, ids: &[String]) -> String {
-        let at = self.below(ids.len() + 1);
-        ids.get(at).map_or("qrm:/a/b/c/{d}", |id| id).to_owned()
-    }
-
-    fn place(&mut self) -> (f64, f64) {
-        match self.below(40) {
-            0 => (f64::NAN, 0.0),
-            1 => (0.0, f64::INFINITY),
-            x => (x as f64 * 20.0, self.below(40) as f64 * -20.0),
-        }
-    }
-}
 
 /// Ids of diagrams, blocks and links.
 struct Ids {
@@ -230,11 +200,11 @@ pub fn edits(bytes: &[u8]) {
 /// Bytes as changes of a project: each is whole or not at all, is taken back and made again without a trace, and leaves a
 /// save that is written and read as the same.
 pub fn edits_of(mut editor: Editor, bytes: &[u8]) {
-    let mut choices = Choices(bytes);
+    let mut choices = Choices::new(bytes, &TEXTS);
     let problems = editor.save().project().1;
     let first = editor.save().clone();
     for _ in 0..CHANGES {
-        if choices.0.is_empty() {
+        if choices.is_over() {
             break;
         }
         match choices.below(16) {
