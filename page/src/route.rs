@@ -188,7 +188,9 @@ async fn save(
 /// A file of the studio.
 async fn studio(State(shared): State<Arc<Shared>>, path: Option<Path<String>>) -> Response {
     let Some(folder) = shared.settings.studio.clone() else {
-        return text(StatusCode::NOT_FOUND, "the studio is not installed here");
+        let why = "the studio is not installed here: web/site.sh of the sources builds it, for target/web/site there or \
+                   for share/trik/studio of where this program is installed";
+        return text(StatusCode::NOT_FOUND, why);
     };
     let path = path.map_or_else(String::new, |Path(path)| path);
     let work = move || Ok(drawing::given(&folder, &path));
