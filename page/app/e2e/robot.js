@@ -313,7 +313,7 @@ export function newTask(folder, name) {
  * Waits until something holds, and gives what that was.
  * @template T
  * @param {string} what
- * @param {() => T | Promise<T>} holds
+ * @param {() => T | undefined | Promise<T | undefined>} holds
  * @returns {Promise<T>}
  */
 export async function eventually(what, holds, patience_ms = END_MS) {
