@@ -208,6 +208,7 @@ fn of_project(name: &str, fields: &mut Fields) -> Result<Change, Failure> {
         },
         "world" => Change::World {
             text: fields.maybe_text("text")?,
+            images: fields.maybe_text("images")?,
         },
         "kit" => Change::Kit {
             kit: Kit::of_id(&fields.text("kit")?).ok_or_else(|| wrong("kit"))?,

@@ -193,6 +193,11 @@ impl Draft {
         self.editor.save().meta().world.as_deref()
     }
 
+    /// The text of the images that its world names in XML, if it has some.
+    pub fn images(&self) -> Option<&str> {
+        self.editor.save().meta().blobs.as_deref()
+    }
+
     /// A diagram with its blocks and links; null if it has none with this id.
     pub fn sheet(&self, diagram: &str, locale: Locale) -> Value {
         let Meaning { project, flow, .. } = self.meaning();

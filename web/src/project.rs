@@ -252,13 +252,13 @@ impl Project {
                     let findings = self.findings();
                     findings.sort(&mut notes);
                     let notes = findings.json(&self.name, &notes, locale);
-                    Ok(json!({"text": written.text, "notes": notes}))
+                    Ok(json!({"text": written.text, "notes": notes, "blocks": written.origins}))
                 }
                 Program::Flow(flow, _) | Program::Text(flow) => {
                     let target = converter(language)?;
                     let program = flow.ready().map_err(Failure::Program)?;
                     let text = lang_dataflow::generate::generate(&program, target);
-                    Ok(json!({"text": text.map_err(Failure::Program)?, "notes": []}))
+                    Ok(json!({"text": text.map_err(Failure::Program)?, "notes": [], "blocks": []}))
                 }
             }
         });

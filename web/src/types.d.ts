@@ -83,6 +83,8 @@ export type Language = 'python' | 'javascript' | 'lua' | 'c' | 'pascal' | 'fshar
 export interface Generated {
   text: string;
   notes: Finding[];
+  /** Of each line of a diagram's text the ids of the blocks that it says; empty for converters. */
+  blocks: string[][];
 }
 
 /** What a project is. */
@@ -263,7 +265,7 @@ export type Change =
   | { do: 'rename'; diagram: string; name: string }
   | { do: 'parameters'; diagram: string; parameters: Parameter[] }
   | { do: 'removeDiagram'; diagram: string }
-  | { do: 'world'; text: string | null }
+  | { do: 'world'; text: string | null; images?: string }
   | { do: 'kit'; kit: 'trikV62Kit' | 'trikV6Kit' };
 
 /** A name that can stand in an expression. */

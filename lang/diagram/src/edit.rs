@@ -136,6 +136,9 @@ pub enum Change {
     World {
         /// Its text in XML.
         text: Option<String>,
+        /// The images that it names, as `blobs.xml` has them; those that are there stay if nothing is given, and an empty text
+        /// takes them away.
+        images: Option<String>,
     },
     /// The robot has another kit.
     Kit {
@@ -267,10 +270,10 @@ impl Editor {
 
     /// The oldest changes go when all of them take too much memory.
     fn forget(&mut self) {
-        let mut bytes: usize = self.done.iter().map(Step::bytes).sum();
+        let mut bytes: usize = self.done.iter().map(|step| step.bytes).sum();
         let mut gone = 0;
         while bytes > limits::EDIT_HISTORY_BYTES && gone + 1 < self.done.len() {
-            bytes -= self.done[gone].bytes();
+            bytes -= self.done[gone].bytes;
             gone += 1;
         }
         self.done.drain(..gone);

@@ -10,6 +10,7 @@ mod commands;
 mod dialects;
 mod lines;
 pub mod names;
+mod origins;
 pub(super) mod plan;
 mod print;
 mod readings;
@@ -24,6 +25,7 @@ mod words;
 mod tests;
 
 use super::lower::{World, lower};
+use super::program::Node;
 use super::project::Project;
 use super::structure::{Jumps, Manner};
 use code::{Code, Kind, Operation, Robot, each_code};
@@ -154,6 +156,8 @@ pub struct Generated {
     pub text: String,
     /// What a person should know of it: warnings.
     pub notes: Vec<Problem>,
+    /// Of each line the ids of the blocks that it says; none of one that is there for others.
+    pub origins: Vec<Vec<String>>,
 }
 
 /// Writes a project in a language.
@@ -199,9 +203,15 @@ pub fn generate(
         return Err(problems);
     }
     notes.extend(remarks(&printer, language));
+    let (text, lines) = printer.print();
+    let blocks = |nodes: Vec<Node>| {
+        let ids = nodes.into_iter().filter_map(|node| program.id(node));
+        ids.map(str::to_owned).collect()
+    };
     Ok(Generated {
-        text: printer.print(),
+        text,
         notes,
+        origins: lines.into_iter().map(blocks).collect(),
     })
 }
 

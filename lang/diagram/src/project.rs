@@ -5,6 +5,7 @@
 
 use lang_text::problem::Problem;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A whole project.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,8 +18,8 @@ pub struct Project {
     pub meta: BTreeMap<String, String>,
     /// XML text of the world model.
     pub world: Option<String>,
-    /// XML text of embedded images.
-    pub blobs: Option<String>,
+    /// XML text of embedded images. It can be long, and copies of a project share it.
+    pub blobs: Option<Arc<str>>,
     /// Templates of the checker by file name, as XML text.
     pub templates: BTreeMap<String, String>,
 }

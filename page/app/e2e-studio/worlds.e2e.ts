@@ -4,7 +4,8 @@
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { expect, test } from 'vitest';
-import { KINDS, SENSORS, SETTINGS, sensorPort } from '../src/studio/world/kinds';
+import { KINDS, SETTINGS } from '../src/studio/world/kinds';
+import { SENSORS, sensorPort } from '../src/studio/world/sensors';
 import { NEW_WORLD, added, changed, isFault, model, withSensor } from '../src/studio/world/model';
 import { RECIPES, RULES, type RuleElement, elementsOf, madeOf, recipe } from '../src/studio/world/rules';
 import { read, spliced } from '../src/studio/world/xml';

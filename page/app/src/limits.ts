@@ -145,3 +145,11 @@ export const WORLD_DRAWN_MAX = 3000;
 export const RULE_FORMS_MAX = 2000;
 /** After the last letter, before rules that are typed are taken. */
 export const RULES_AFTER_MS = 400;
+/** Megabytes of a file that becomes a picture of a world. */
+export const PICTURE_FILE_MB_MAX = 32;
+/** Bytes of a picture as it is kept: larger ones are made smaller. A floor takes 4 MiB. */
+export const PICTURE_BYTES_MAX = 2 << 20;
+/** Pixels of its longer side. */
+export const PICTURE_SIDE_PX_MAX = 2000;
+/** Pieces of what is drawn by hand at once. */
+export const STROKES_MAX = 2000;

@@ -2,7 +2,7 @@
 //!
 //! Owns which tags there are, where they stand and what each of them says. Knows no simulation.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use lang_diagram::ports::{Direction, Kit, Port};
 use lang_text::problem::{Problem, Severity, keep};
@@ -29,6 +29,9 @@ pub struct Opened {
 pub(super) fn read(text: &str) -> Result<Opened, Vec<Problem>> {
     let document = xml::parse(text).map_err(|problem| vec![problem])?;
     let mut document = document.into_owned();
+    // TRIK Studio exports a world together with its images.
+    let mut blobs = BTreeMap::new();
+    gather_blobs(&document, &mut blobs);
     if document.name != "root"
         && let Some(at) = document
             .nodes
@@ -41,7 +44,9 @@ pub(super) fn read(text: &str) -> Result<Opened, Vec<Problem>> {
     if document.child("world").is_none() {
         return Err(vec![Problem::error(words::no_world())]);
     }
+    gather_blobs(&document, &mut blobs);
     let mut reader = Reader::new(&document);
+    reader.field.blobs = blobs;
     reader.settings(&mut document);
     reader.world(&mut document);
     reader.robots(&mut document);
@@ -481,21 +486,34 @@ fn blob_of(element: &Element<'static>, path: &str) -> Blob {
     }
 }
 
+/// The contents of images that stand in a tag beside others.
+fn gather_blobs(outside: &Element<'static>, all: &mut BTreeMap<String, Blob>) {
+    if let Some(blobs) = outside.child("blobs") {
+        images_of(blobs, all);
+    }
+}
+
+fn images_of(blobs: &Element<'static>, all: &mut BTreeMap<String, Blob>) {
+    let lists = blobs.elements().filter(|one| one.name == "images");
+    for image in lists.flat_map(Element::elements) {
+        let id = image.attribute("imageId").unwrap_or_default();
+        let path = image.attribute("path").unwrap_or_default();
+        all.insert(id.to_owned(), blob_of(image, path));
+    }
+}
+
 pub(super) fn add_blobs(field: &mut Field, text: &str) -> Vec<Problem> {
     let mut problems = Vec::new();
     if !text.trim().is_empty() {
         match xml::parse(text) {
             Ok(root) => {
                 let root = root.into_owned();
-                let root = match root.name.as_ref() {
-                    "blobs" => &root,
-                    _ => root.child("blobs").unwrap_or(&root),
-                };
-                let lists = root.elements().filter(|one| one.name == "images");
-                for image in lists.flat_map(Element::elements) {
-                    let id = image.attribute("imageId").unwrap_or_default();
-                    let path = image.attribute("path").unwrap_or_default();
-                    field.blobs.insert(id.to_owned(), blob_of(image, path));
+                match root.name.as_ref() {
+                    "blobs" => images_of(&root, &mut field.blobs),
+                    _ => match root.child("blobs") {
+                        Some(blobs) => images_of(blobs, &mut field.blobs),
+                        None => images_of(&root, &mut field.blobs),
+                    },
                 }
             }
             Err(problem) => problems.push(problem),

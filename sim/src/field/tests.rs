@@ -198,6 +198,21 @@ fn pictures_are_found_by_their_ids_and_missed_by_name() {
 }
 
 #[test]
+fn a_world_may_have_its_images_with_it() {
+    let images = "<blobs><images><image imageId=\"p\" path=\"a.png\">AAAA</image></images></blobs>";
+    let world = "<world><images><image id=\"i\" imageId=\"p\" rect=\"0:0:1:1\"/></images></world>";
+    for text in [
+        format!("<root><settings/>{world}{images}</root>"),
+        format!("<model><root><settings/>{world}</root>{images}</model>"),
+    ] {
+        let mut field = read(&text).field;
+        assert_eq!(field.blobs["p"].text, "AAAA");
+        assert_eq!(field.add_blobs(""), []);
+        assert!(field.write().contains("<settings/>"));
+    }
+}
+
+#[test]
 fn numbers_that_no_field_has_are_refused_with_their_place() {
     for bad in ["NaN", "1e308", "inf", "-1e7"] {
         let told = refused(&format!(

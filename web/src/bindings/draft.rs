@@ -150,6 +150,11 @@ impl Draft {
         self.0.world().map(str::to_owned)
     }
 
+    /// The text of the images that its world names in XML, each one with its id, as Base64 or SVG.
+    pub fn images(&self) -> Option<String> {
+        self.0.images().map(str::to_owned)
+    }
+
     /// It as a file that TRIK Studio opens.
     #[wasm_bindgen(unchecked_return_type = "Answer<Uint8Array>")]
     pub fn save(&self) -> JsValue {

@@ -14,6 +14,7 @@ use crate::save::{is_link, writable};
 use lang_text::problem::{Problem, Words};
 use lang_text::xml;
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Makes a change, or a part of it if something is wrong.
 pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String>, Problem> {
@@ -59,7 +60,7 @@ pub(super) fn carry_out(pen: &mut Pen<'_>, change: &Change) -> Result<Vec<String
             parameters,
         } => parameters_of(pen, diagram, parameters)?,
         Change::RemoveDiagram { diagram } => remove_diagram(pen, diagram)?,
-        Change::World { text } => world(pen, text.as_deref())?,
+        Change::World { text, images } => world(pen, text.as_deref(), images.as_deref())?,
         Change::Kit { kit } => {
             let keys = &mut pen.meta().keys;
             keys.insert(KIT_KEY.to_owned(), kit.id().into());
@@ -471,21 +472,36 @@ fn remove_diagram(pen: &mut Pen<'_>, id: &str) -> Result<(), Problem> {
     Ok(())
 }
 
-fn world(pen: &mut Pen<'_>, text: Option<&str>) -> Result<(), Problem> {
+fn world(pen: &mut Pen<'_>, text: Option<&str>, images: Option<&str>) -> Result<(), Problem> {
     if let Some(text) = text {
-        let file = |mut problem: Problem| {
-            problem.place.file = Some(read::WORLD_FILE.to_owned());
-            problem
-        };
+        entry(read::WORLD_FILE, text)?;
+    }
+    let images = images.map(|text| (!text.is_empty()).then_some(text));
+    if let Some(Some(text)) = images {
+        entry(read::BLOBS_FILE, text)?;
+    }
+    let meta = pen.meta();
+    meta.world = text.map(str::to_owned);
+    if let Some(images) = images {
+        meta.blobs = images.map(Arc::from);
+    }
+    Ok(())
+}
+
+/// A text can be a file in XML of a save.
+fn entry(name: &str, text: &str) -> Result<(), Problem> {
+    let fits = || {
         if text.len() > limits::ENTRY_BYTES {
             let most = limits::ENTRY_BYTES;
-            return Err(file(Problem::error(words::long_text(text.len(), most))));
+            return Err(Problem::error(words::long_text(text.len(), most)));
         }
-        writable(text).map_err(file)?;
-        xml::parse(text).map_err(file)?;
-    }
-    pen.meta().world = text.map(str::to_owned);
-    Ok(())
+        writable(text)?;
+        xml::parse(text).map(|_| ())
+    };
+    fits().map_err(|mut problem| {
+        problem.place.file = Some(name.to_owned());
+        problem
+    })
 }
 
 /// Which objects stand for which: the names of subprograms by their logical ids.

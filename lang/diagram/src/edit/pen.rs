@@ -12,6 +12,7 @@ use crate::read::Meta;
 use crate::save::{Save, is_link};
 use lang_text::problem::Problem;
 use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 /// The other side of a change: what the objects were that it touched, or will be.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub(super) struct Step {
     meta: Option<Meta>,
     /// Whether the save had been changed before.
     is_edited: bool,
+    /// About how much memory it takes.
+    pub(super) bytes: usize,
 }
 
 impl Step {
@@ -43,13 +46,6 @@ impl Step {
     pub(super) fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.meta.is_none()
     }
-
-    /// About how much memory it takes.
-    pub(super) fn bytes(&self) -> usize {
-        let objects = self.objects.iter();
-        let objects = objects.map(|(id, one)| id.len() + one.as_ref().map_or(0, size));
-        objects.sum::<usize>() + self.meta.as_ref().map_or(0, size_of_meta)
-    }
 }
 
 fn size(object: &Object) -> usize {
@@ -63,11 +59,16 @@ fn size(object: &Object) -> usize {
     200 + texts(&object.children) + properties.sum::<usize>() + lists.sum::<usize>()
 }
 
-fn size_of_meta(meta: &Meta) -> usize {
-    let text = |one: &Option<String>| one.as_ref().map_or(0, String::len);
+/// Images are counted only if another change has let go of them.
+fn size_of_meta(meta: &Meta, now: &Meta) -> usize {
+    let blobs = match (&meta.blobs, &now.blobs) {
+        (Some(old), Some(new)) if Arc::ptr_eq(old, new) => 0,
+        (Some(old), _) => old.len(),
+        (None, _) => 0,
+    };
     let keys = meta.keys.iter().chain(&meta.templates);
-    text(&meta.world)
-        + text(&meta.blobs)
+    meta.world.as_ref().map_or(0, String::len)
+        + blobs
         + keys.map(|(key, one)| key.len() + one.len()).sum::<usize>()
 }
 
@@ -124,7 +125,12 @@ impl<'a> Pen<'a> {
 
     /// The way back.
     pub(super) fn finish(self) -> Step {
+        let objects = self.before.iter();
+        let objects = objects.map(|(id, one)| id.len() + one.as_ref().map_or(0, size));
+        let meta = self.meta.as_ref();
+        let meta = meta.map_or(0, |old| size_of_meta(old, &self.save.meta));
         let step = Step {
+            bytes: objects.sum::<usize>() + meta,
             objects: self.before,
             meta: self.meta,
             is_edited: self.save.is_edited,

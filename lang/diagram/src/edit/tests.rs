@@ -118,6 +118,38 @@ fn a_block_takes_its_links_with_it_and_brings_them_back() {
 }
 
 #[test]
+fn images_come_and_go_with_their_world_and_are_not_copied_by_other_changes() {
+    let mut editor = editor();
+    let world = |images: Option<&str>| Change::World {
+        text: Some(format!("<root n=\"{}\"/>", images.map_or(0, str::len))),
+        images: images.map(str::to_owned),
+    };
+    let images = format!(
+        "<blobs><images><image imageId=\"p\" path=\"a.png\">{}</image></images></blobs>",
+        "A".repeat(limits::EDIT_HISTORY_BYTES / 8)
+    );
+    editor.apply(&world(Some(&images))).unwrap();
+    let opened = read(&editor.save().write().unwrap()).unwrap();
+    assert_eq!(opened.project.blobs.as_deref(), Some(&*images));
+    for _ in 0..20 {
+        editor.apply(&world(None)).unwrap();
+    }
+    assert_eq!(project(&editor).blobs.as_deref(), Some(&*images));
+    assert_eq!(editor.undo_count(), 21);
+    editor.apply(&world(Some(""))).unwrap();
+    assert_eq!(project(&editor).blobs, None);
+    let opened = read(&editor.save().write().unwrap()).unwrap();
+    assert_eq!(opened.project.blobs, None);
+    assert!(editor.undo());
+    assert_eq!(project(&editor).blobs.as_deref(), Some(&*images));
+    let refused = editor.apply(&world(Some("<blobs>"))).unwrap_err();
+    assert_eq!(refused.place.file.as_deref(), Some("blobs.xml"));
+    assert_eq!(project(&editor).blobs.as_deref(), Some(&*images));
+    while editor.undo() {}
+    assert_eq!(project(&editor).blobs, None);
+}
+
+#[test]
 fn links_follow_a_block_that_moves() {
     let mut editor = editor();
     let blocks = &project(&editor).diagrams[0].blocks;

@@ -168,8 +168,12 @@ fn of_project(choices: &mut Choices<'_>, ids: &Ids, kind: usize) -> Change {
         _ => match choices.below(3) {
             0 => Change::World {
                 text: Some("<root/>".into()),
+                images: [None, Some("<blobs/>"), Some("")][choices.below(3)].map(str::to_owned),
             },
-            1 => Change::World { text: None },
+            1 => Change::World {
+                text: None,
+                images: None,
+            },
             _ => Change::Kit {
                 kit: [Kit::V6, Kit::V62][choices.below(2)],
             },

@@ -6,6 +6,7 @@
 
 use super::readings::Reading;
 use crate::blocks::act::Phrase;
+use crate::program::Node;
 use std::rc::Rc;
 
 /// What is known of a value before the program runs.
@@ -276,6 +277,8 @@ pub(super) struct Typed {
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Statement {
+    /// What follows in the list, until the next of these, says these blocks. It is no word of any language.
+    From(Vec<Node>),
     Comment(String),
     Do(Code),
     Set(Code, Code),
@@ -346,7 +349,8 @@ pub(super) fn each_code(list: &[Statement], seen: &mut dyn FnMut(&Code)) {
             }
             Statement::Call { arguments, .. } => arguments.iter().for_each(&mut every),
             Statement::Choice { on, .. } => every(on),
-            Statement::Comment(_)
+            Statement::From(_)
+            | Statement::Comment(_)
             | Statement::Loop { .. }
             | Statement::Break(_)
             | Statement::Continue(_)

@@ -3,6 +3,7 @@
 //! Owns which loops need a name. All words come from the dialect.
 
 use super::code::{Code, Conversion, Operation, Own, Statement, Truth};
+use super::origins;
 use super::print::{Printer, fill, own_name};
 
 impl Printer<'_> {
@@ -12,6 +13,7 @@ impl Printer<'_> {
                 out.push_str(self.dialect.syntax.indent);
             }
             out.push_str(line);
+            origins::mark(out, &self.from);
             out.push('\n');
         }
     }
@@ -19,7 +21,7 @@ impl Printer<'_> {
     fn block(&mut self, list: &[Statement], depth: usize, out: &mut String) {
         // What the language has no words for is left out.
         let is_empty = list.iter().all(|statement| {
-            matches!(statement, Statement::Comment(_))
+            matches!(statement, Statement::Comment(_) | Statement::From(_))
                 || matches!(statement, Statement::Do(code) if self.code(code, 0).is_empty())
         });
         if is_empty && !self.dialect.syntax.empty.is_empty() {
@@ -29,9 +31,11 @@ impl Printer<'_> {
     }
 
     pub(super) fn list(&mut self, list: &[Statement], depth: usize, out: &mut String) {
+        let before = std::mem::take(&mut self.from);
         for statement in list {
             self.statement(statement, depth, out);
         }
+        self.from = before;
     }
 
     fn end(&self, text: &str, depth: usize, out: &mut String) {
@@ -40,9 +44,16 @@ impl Printer<'_> {
         }
     }
 
+    /// A return says no block: what ended the program stands before it.
+    fn leave(&mut self, depth: usize, out: &mut String) {
+        self.from.clear();
+        self.end(self.dialect.syntax.return_, depth, out);
+    }
+
     fn statement(&mut self, statement: &Statement, depth: usize, out: &mut String) {
         let syntax = self.dialect.syntax;
         match statement {
+            Statement::From(nodes) => self.from.clone_from(nodes),
             Statement::Comment(text) => self.line(depth, &self.comment(text), out),
             Statement::Do(code) => {
                 let said = self.code(code, 0);
@@ -101,7 +112,7 @@ impl Printer<'_> {
             Statement::Continue(label) => {
                 self.jump(*label, syntax.continue_, syntax.continue_to, depth, out);
             }
-            Statement::Return => self.end(syntax.return_, depth, out),
+            Statement::Return => self.leave(depth, out),
             Statement::Goto(label) => {
                 self.line(depth, &fill(syntax.goto, &[&format!("place{label}")]), out);
             }
@@ -174,8 +185,10 @@ impl Printer<'_> {
             self.block(body, depth + 1, out);
         }
         // A condition after `else` needs no depth of its own.
-        if let [Statement::If(when, yes, no)] = other {
+        if let [Statement::From(nodes), Statement::If(when, yes, no)] = other {
+            let before = std::mem::replace(&mut self.from, nodes.clone());
             self.line(depth, &fill(syntax.else_if, &[&self.code(when, 0)]), out);
+            self.from = before;
             self.block(yes, depth + 1, out);
             if !no.is_empty() {
                 self.line(depth, syntax.else_, out);
@@ -310,7 +323,8 @@ pub(super) fn find_named(list: &[Statement], around: &mut Vec<usize>, named: &mu
                     .for_each(|part| find_named(part, around, named));
                 around.pop();
             }
-            Statement::Comment(_)
+            Statement::From(_)
+            | Statement::Comment(_)
             | Statement::Do(_)
             | Statement::Set(..)
             | Statement::Call { .. }

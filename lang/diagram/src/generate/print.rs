@@ -8,6 +8,7 @@ use super::code::{
 };
 use super::lines::find_named;
 use super::names::{Names, Rules};
+use super::origins;
 use super::plan::Owner;
 use super::routines::{Abilities, Routine, Script};
 pub(super) use super::row::{
@@ -15,7 +16,7 @@ pub(super) use super::row::{
 };
 use super::row::{SUM, is_hidden};
 use crate::blocks::act::Phrase;
-use crate::program::Program;
+use crate::program::{Node, Program};
 
 /// The words of a language for each group of operations. Each is a match in full, so that a new operation does not
 /// compile until every language has words for it or [`NONE`].
@@ -88,6 +89,8 @@ pub(super) struct Printer<'a> {
     /// Loops that are named by breaks and continues from inside of other loops.
     pub(super) named: Vec<usize>,
     pub(super) around: Vec<usize>,
+    /// What the statement says that is printed.
+    pub(super) from: Vec<Node>,
 }
 
 impl<'a> Printer<'a> {
@@ -124,24 +127,28 @@ impl<'a> Printer<'a> {
             parameters: Vec::new(),
             named: Vec::new(),
             around: Vec::new(),
+            from: Vec::new(),
         }
     }
 
-    /// The whole program.
-    pub(super) fn print(&self) -> String {
+    /// The whole program, and the blocks that each of its lines says.
+    pub(super) fn print(&self) -> (String, Vec<Vec<Node>>) {
         let text = (self.dialect.assemble)(self);
         let mut out = String::with_capacity(text.len());
+        let mut origins = Vec::new();
         // One end of line everywhere, no spaces before it, no two empty lines.
         let mut empty = 0;
         for line in text.lines() {
+            let (line, nodes) = origins::read(line);
             let line = line.trim_end();
             empty = if line.is_empty() { empty + 1 } else { 0 };
             if empty <= 1 {
                 out.push_str(line);
                 out.push('\n');
+                origins.push(nodes);
             }
         }
-        out
+        (out, origins)
     }
 
     /// The helpers that a text uses, in order.
@@ -222,6 +229,7 @@ impl<'a> Printer<'a> {
             parameters: routine.parameters.clone(),
             named,
             around: Vec::new(),
+            from: Vec::new(),
         };
         let mut out = String::new();
         inner.list(&routine.body, depth, &mut out);

@@ -183,7 +183,8 @@ impl Statement {
             | Self::While { body, .. }
             | Self::DoWhile { body, .. }
             | Self::Repeat { body, .. } => vec![body],
-            Self::Comment(_)
+            Self::From(_)
+            | Self::Comment(_)
             | Self::Do(_)
             | Self::Set(..)
             | Self::Call { .. }
@@ -221,9 +222,34 @@ impl Lowerer<'_> {
     pub(super) fn list(&mut self, list: &[Tree]) -> Vec<Statement> {
         let mut out = Vec::new();
         for tree in list {
+            let at = out.len();
             self.tree(tree, &mut out);
+            // A list of nothing else would be no empty one.
+            if out.len() > at {
+                out.insert(at, Statement::From(self.blocks(tree)));
+            }
         }
         out
+    }
+
+    /// The blocks that a statement says; of one with others in it those of its head.
+    fn blocks(&self, tree: &Tree) -> Vec<Node> {
+        let mut all = Vec::new();
+        let mut add = |block| all.extend(self.node(block));
+        match tree {
+            Tree::Step(block) | Tree::Switch { on: block, .. } | Tree::End(block) => add(*block),
+            Tree::If { when, .. } | Tree::While { when, .. } | Tree::DoWhile { when, .. } => {
+                when.tests(&mut add);
+            }
+            Tree::Loop { .. }
+            | Tree::Break(_)
+            | Tree::Continue(_)
+            | Tree::Set { .. }
+            | Tree::Choice { .. }
+            | Tree::Goto(_)
+            | Tree::Label(_) => {}
+        }
+        all
     }
 
     fn tree(&mut self, tree: &Tree, out: &mut Vec<Statement>) {

@@ -56,6 +56,52 @@ fn function(body: &str) -> Project {
     chain(&[("Function", &[("Body", body)])])
 }
 
+/// The lines of a program, by the block that they say.
+fn lines_of(project: &Project, language: Language, id: &str) -> Vec<String> {
+    let generated = generate(project, language, Options::default()).unwrap();
+    assert_eq!(generated.text.lines().count(), generated.origins.len());
+    let lines = generated.text.lines().zip(&generated.origins);
+    let own = lines.filter(|(_, blocks)| blocks.iter().any(|one| one == id));
+    own.map(|(line, _)| line.trim().to_owned()).collect()
+}
+
+#[test]
+fn each_line_names_the_blocks_that_it_says() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let motors = sketch.block("TrikV6EnginesForward", &[("Ports", "M3"), ("Power", "71")]);
+    let test = sketch.block("IfBlock", &[("Condition", "sensorA1 > 23")]);
+    let wait = sketch.block("Timer", &[("Delay", "517")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.link(start, motors);
+    sketch.link(motors, test);
+    sketch.guarded(test, wait, "true");
+    sketch.guarded(test, end, "false");
+    sketch.link(wait, end);
+    let project = sketch.project();
+    let id = |kind: &str| {
+        let blocks = &project.diagrams[0].blocks;
+        let block = blocks.iter().find(|one| one.kind == kind).unwrap();
+        block.id.clone()
+    };
+    for language in Language::ALL {
+        for (kind, said) in [
+            ("TrikV6EnginesForward", "71"),
+            ("IfBlock", "23"),
+            ("Timer", "517"),
+        ] {
+            let lines = lines_of(&project, language, &id(kind));
+            assert!(lines[0].contains(said), "{language:?}: {lines:?}");
+            for other in ["71", "23", "517"] {
+                let is_own = other == said;
+                let is_there = lines.iter().any(|line| line.contains(other));
+                assert_eq!(is_there, is_own, "{language:?} {kind}: {lines:?}");
+            }
+        }
+        assert_eq!(lines_of(&project, language, &id("InitialNode")), [""; 0]);
+    }
+}
+
 #[test]
 fn the_shapes_of_trik_are_kept() {
     let project = chain(&[

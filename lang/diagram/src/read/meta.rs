@@ -7,6 +7,7 @@ use crate::archive::Archive;
 use lang_text::problem::Problem;
 use lang_text::xml;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// File of the keys.
 pub const META_FILE: &str = "metaInfo.xml";
@@ -24,8 +25,8 @@ pub struct Meta {
     pub keys: BTreeMap<String, String>,
     /// XML text of the world model.
     pub world: Option<String>,
-    /// XML text of embedded images.
-    pub blobs: Option<String>,
+    /// XML text of embedded images. It can be long, and whatever keeps a former state of the save shares it.
+    pub blobs: Option<Arc<str>>,
     /// Templates of the checker by file name.
     pub templates: BTreeMap<String, String>,
 }
@@ -56,7 +57,7 @@ impl Meta {
             } else if name == WORLD_FILE {
                 meta.world = Some(text.to_owned());
             } else {
-                meta.blobs = Some(text.to_owned());
+                meta.blobs = Some(text.into());
             }
         }
         if !is_there {
@@ -80,7 +81,7 @@ impl Meta {
             // A file of its own is newer than a key.
             match key {
                 "worldModel" => _ = self.world.get_or_insert(value),
-                "blobs" => _ = self.blobs.get_or_insert(value),
+                "blobs" => _ = self.blobs.get_or_insert_with(|| value.into()),
                 _ => match key.strip_prefix("templates.") {
                     Some(name) => {
                         let file = format!("{name}.xml");

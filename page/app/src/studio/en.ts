@@ -95,6 +95,7 @@ export const en = {
 
   text: 'As text',
   asText: 'Show the program as',
+  emptyLine: 'empty line',
   languages: {
     sentences: 'sentences',
     python: 'Python',

@@ -98,6 +98,7 @@ export const ru: Words = {
 
   text: 'Текстом',
   asText: 'Показать программу как',
+  emptyLine: 'пустая строка',
   languages: {
     sentences: 'предложения',
     python: 'Python',

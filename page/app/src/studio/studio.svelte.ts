@@ -29,6 +29,7 @@ import { PLAIN, type Point } from './run/point';
 import { isScript } from './script/names';
 import { fromLink, isLink } from './share';
 import { words } from './words';
+import { parted } from './world/pictures';
 
 /** What of the project is in the middle of the page. */
 export type Part = 'program' | 'world' | 'rules';
@@ -380,6 +381,11 @@ export class Studio {
     return await this.#drafts.call('world');
   }
 
+  /** The text of the images that it names; empty if there are none. */
+  async images(): Promise<string> {
+    return await this.#drafts.call('images');
+  }
+
   /** What is wrong with the world and its rules. */
   get worldFindings(): Finding[] {
     return this.looks.findings.filter(({ part }) => part === WORLD_PART);
@@ -397,18 +403,18 @@ export class Studio {
     const { name } = file;
     const read = name.endsWith('.qrs')
       ? await this.#drafts.call('worldOf', name, new Uint8Array(await file.arrayBuffer()))
-      : { world: await file.text() };
-    if (typeof read === 'string' || read.world === '') {
+      : parted(await file.text());
+    if (typeof read === 'string' || read.text === '') {
       this.refusal = words.notOpened(name, typeof read === 'string' ? read : words.worldless);
       return;
     }
-    const { world: text } = read;
+    const { text, images } = read;
     const why = await this.#drafts.call('wrongWith', text);
     if (why) {
       this.refusal = words.notOpened(name, why);
       return;
     }
-    await this.apply({ do: 'world', text });
+    await this.apply({ do: 'world', text, images });
     if (!this.refusal) this.notice = words.worldLoaded(name);
   }
 
@@ -440,6 +446,17 @@ export class Studio {
     this.turnTo('program');
     await this.seeNamed(diagram ?? '');
     if (object) this.chosen = new Set([object]);
+  }
+
+  /** Chooses blocks, in the diagram of the first of them. */
+  async choose(ids: readonly string[]): Promise<void> {
+    this.turnTo('program');
+    const [first] = ids;
+    if (first !== undefined && !ids.some((id) => this.block(id))) {
+      const home = await this.#drafts.call('home', first);
+      if (home !== undefined) await this.see(home);
+    }
+    this.chosen = new Set(ids.filter((id) => this.block(id)));
   }
 
   #show(drawing: Drawing | string): void {

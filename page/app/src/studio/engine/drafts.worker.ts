@@ -15,6 +15,7 @@ import type {
   Scene,
   ScriptState,
 } from './facts';
+import { type Place, joined } from '../world/pictures';
 import { serve } from './remote';
 
 /** What a page shows of a draft after each change. */
@@ -36,7 +37,7 @@ export interface Looks {
 let draft: web.Draft | undefined;
 let locale: Locale = 'en';
 /** The world of the task, in which everything is judged; undefined: there is none. */
-let task: string | undefined;
+let task: Place | undefined;
 
 function now(diagram: string): Drawing {
   const state = must().about();
@@ -62,7 +63,7 @@ function begin(answer: ReturnType<typeof web.blank>): Drawing | string {
   if (task === undefined) return now('');
   // It is there from the beginning: nobody takes it back.
   const name = draft.about().name;
-  const changed = draft.apply({ do: 'world', text: task }, locale);
+  const changed = draft.apply({ do: 'world', ...task }, locale);
   const saved = changed.ok ? draft.save() : changed;
   const opened = saved.ok ? web.edit(name, saved.value, { locale }) : saved;
   draft.free();
@@ -108,6 +109,16 @@ const calls = {
   },
   undo: (diagram: string) => (must().undo(), now(diagram)),
   redo: (diagram: string) => (must().redo(), now(diagram)),
+  /** The diagram with a block. */
+  home: (block: string) => {
+    const has = (id: string) =>
+      must()
+        .sheet(id, locale)
+        ?.blocks.some((one) => one.id === block);
+    return must()
+      .about()
+      .diagrams.find(({ id }) => has(id))?.id;
+  },
   copy(ids: string[]) {
     const copied = must().copy(ids);
     return copied.ok ? copied.value : { blocks: [], links: [] };
@@ -123,6 +134,10 @@ const calls = {
   },
   /** The text of the world, if there is one. */
   world: () => draft?.world(),
+  /** The text of the images that it names. */
+  images: () => draft?.images() ?? '',
+  /** The world with its images in it; empty if there is none. */
+  field: () => joined(draft?.world() ?? '', draft?.images() ?? ''),
   /** What is wrong with a world; empty if it can be run in. */
   wrongWith(world: string): string {
     const found = web.lint('world.xml', new TextEncoder().encode(world), { locale });
@@ -130,12 +145,12 @@ const calls = {
     return said(found.value.filter(({ level }) => level === 'error').slice(0, 3));
   },
   /** That of a project in a file; what is no project says why. */
-  worldOf(name: string, bytes: Uint8Array): { world: string } | string {
+  worldOf(name: string, bytes: Uint8Array): Place | string {
     const opened = web.edit(name, bytes, { locale });
     if (!opened.ok) return said(opened.error.problems);
-    const world = opened.value.world() ?? '';
+    const place = { text: opened.value.world() ?? '', images: opened.value.images() ?? '' };
     opened.value.free();
-    return { world };
+    return place;
   },
   /** A world with the robot at its start, or why nothing runs in it. */
   preview(world: string): { scene: Scene; state: ScriptState } | string {
@@ -151,7 +166,10 @@ const calls = {
     return made.ok ? made.value : text;
   },
   /** What is open is the task: its world is that of everything from now on. */
-  setTask: () => (task = must().world()),
+  setTask() {
+    const [text, images] = [must().world(), must().images() ?? ''];
+    task = text === undefined ? undefined : { text, images };
+  },
   /** What is wrong with it, and the program as text from the diagram of this name on. */
   look(wanted: Language | 'sentences' | 'source', diagram: string): Looks {
     const findings = named(must().lint(locale));
@@ -170,7 +188,12 @@ const calls = {
     if (!shown.ok) return wrong(shown.error.problems);
     const { value } = shown;
     if (Array.isArray(value)) return looks(true, value);
-    return looks(true, [{ text: typeof value === 'string' ? value : value.text, blocks: [] }]);
+    if (typeof value === 'string') return looks(true, [{ text: value, blocks: [] }]);
+    const written = value.text.replace(/\n$/, '').split('\n');
+    return looks(
+      true,
+      written.map((text, at) => ({ text, blocks: value.blocks[at] ?? [] })),
+    );
   },
 };
 

@@ -52,6 +52,7 @@ export interface Draft {
   names(): NameFacts[];
   copy(ids: string[]): Answer<Piece>;
   world(): string | undefined;
+  images(): string | undefined;
   save(): Answer<Uint8Array>;
   stored(): Answer<Uint8Array>;
   project(options?: OpenOptions): Answer<Project>;

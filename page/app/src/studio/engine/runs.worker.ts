@@ -3,6 +3,7 @@
 import init, * as web from 'trik-studio-web';
 import type { DebugAnswer, Finding, Judged, Locale, Message, Progress, Scene, State } from './facts';
 import { serve } from './remote';
+import { joined } from '../world/pictures';
 import { answerOf, type Answered, reported, type HeldState, heldOf } from '../run/told';
 
 /** What there is to see after some ticks. */
@@ -169,7 +170,8 @@ const calls = {
     if (name.endsWith('.qrs')) {
       const edited = web.edit(name, bytes, { locale });
       if (!edited.ok) return said(edited.error.problems);
-      const text = edited.value.world();
+      const world = edited.value.world();
+      const text = world && joined(world, edited.value.images() ?? '');
       edited.value.free();
       return text === undefined ? undefined : { text };
     }

@@ -12,6 +12,7 @@ import type { Judged, Message, Scene, ScriptState } from '../engine/facts';
 import { keep } from '../keep';
 import type { Studio } from '../studio.svelte';
 import { words as studioWords } from '../words';
+import { joined } from '../world/pictures';
 import { type ScriptLanguage, languageOf } from './names';
 import { Player } from './player';
 import type { Picture, PlayerNews } from './player.worker';
@@ -106,7 +107,7 @@ export class Script {
     }
     this.end();
     const isTask = this.studio.hasTask || world === undefined;
-    this.#world = isTask ? ((await this.studio.drafts.call('world')) ?? '') : world;
+    this.#world = isTask ? await this.studio.drafts.call('field') : world;
     this.worldName = '';
     this.text = new TextDecoder().decode(bytes);
     this.name = name;
@@ -173,9 +174,9 @@ export class Script {
   async loadWorld(file: File): Promise<void> {
     const read = file.name.endsWith('.qrs')
       ? await this.studio.drafts.call('worldOf', file.name, new Uint8Array(await file.arrayBuffer()))
-      : { world: await file.text() };
+      : { text: await file.text(), images: '' };
     const before = this.#world;
-    const why = typeof read === 'string' ? read : await this.#try(read.world);
+    const why = typeof read === 'string' ? read : await this.#try(joined(read.text, read.images));
     if (why) {
       this.#world = before;
       this.studio.refusal = studioWords.notOpened(file.name, why);

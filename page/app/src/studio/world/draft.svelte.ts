@@ -4,8 +4,21 @@
 
 import type { Finding } from '../engine/facts';
 import type { Studio } from '../studio.svelte';
-import type { KindName } from './kinds';
-import { type Item, NEW_WORLD, type WorldFault, type WorldModel, isFault, model } from './model';
+import { KINDS, type KindName, isPicture, pictureBox } from './kinds';
+import {
+  type Item,
+  NEW_WORLD,
+  type WorldFault,
+  type WorldModel,
+  added,
+  changed,
+  drawnTo,
+  isFault,
+  model,
+  without,
+} from './model';
+import { type Chosen, newId, withImage, withoutImages } from './pictures';
+import type { Spot } from './units';
 import { type Splice, type Tag, letterAt, placeOf, spliced, tagAt } from './xml';
 
 export class WorldDraft {
@@ -106,16 +119,68 @@ export class WorldDraft {
     await this.put(spliced(this.text, splices));
   }
 
+  /** Adds a picture that shows an image of the person: one step to be taken back. The key that it has. */
+  async addPicture(chosen: Chosen, from: Spot, to: Spot): Promise<string | undefined> {
+    const found = this.model;
+    const kind = KINDS.find(({ name }) => name === 'image');
+    const kept = await this.#withImage(chosen);
+    if (!found || !kind || !kept) return undefined;
+    const { splices, key } = added(found, kind, from, to, { imageId: kept.id });
+    await this.put(spliced(found.document.text, splices), kept.images);
+    return key;
+  }
+
+  /** A picture shows another image, as wide as before. */
+  async changePicture(item: Item, chosen: Chosen): Promise<void> {
+    const kept = await this.#withImage(chosen);
+    if (!this.model || !kept) return;
+    const [x, y, width] = pictureBox(item.values);
+    const high = (Math.abs(width) * chosen.height) / chosen.width;
+    const grip = item.kind.grips[0];
+    const place = grip ? drawnTo(item, grip, [x + width, y + high]) : {};
+    const splices = changed(this.model, item.key, { imageId: kept.id, ...place });
+    await this.put(spliced(this.model.document.text, splices), this.#without(kept.images, item));
+  }
+
+  /** Takes a thing away; the image of a picture goes with the last one that shows it. */
+  async remove(item: Item): Promise<void> {
+    const { model: found } = this;
+    if (!found) return;
+    const text = spliced(found.document.text, without(found, item.key));
+    if (!isPicture(item)) {
+      await this.put(text);
+      return;
+    }
+    const images = await this.studio.images();
+    await this.put(text, this.#without(images, item));
+  }
+
+  /** Images without that of a picture, if no other picture shows it. */
+  #without(images: string, item: Item): string {
+    const id = item.values.text('imageId');
+    const others = (this.model?.items ?? []).filter((one) => one.key !== item.key && isPicture(one));
+    return others.some(({ values }) => values.text('imageId') === id)
+      ? images
+      : withoutImages(images, new Set([id]));
+  }
+
+  async #withImage({ path, text }: Chosen): Promise<{ id: string; images: string } | undefined> {
+    if (this.isFixed) return undefined;
+    const id = newId();
+    const images = withImage(await this.studio.images(), { id, path, text });
+    return images === undefined ? undefined : { id, images };
+  }
+
   async make(): Promise<void> {
     await this.put(NEW_WORLD);
   }
 
-  /** Another text. What is shown is that at once; what the draft refuses, which is told, is as it was before. */
-  async put(text: string): Promise<boolean> {
+  /** Another text, perhaps with other images. What is shown is that at once; what the draft refuses, which is told, is as it was before. */
+  async put(text: string, images?: string): Promise<boolean> {
     if (this.isFixed || text === this.text) return true;
     this.text = text;
     this.#number += 1;
-    await this.studio.apply({ do: 'world', text });
+    await this.studio.apply({ do: 'world', text, ...(images === undefined ? {} : { images }) });
     return this.studio.refusal === '';
   }
 

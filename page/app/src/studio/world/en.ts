@@ -2,7 +2,13 @@
 
 import type { KindName } from './kinds';
 import type { WorldFault } from './model';
+import type { NoPicture } from './pictures';
 import type { Recipe, RuleGroup, RuleTag } from './rules';
+
+const notPictures: Record<NoPicture, string> = {
+  tooLarge: 'it is too large for a world. Make it smaller, and try again',
+  unreadable: 'this browser knows no picture in it. PNG, JPEG and SVG are pictures',
+};
 
 const kinds: Record<KindName, string> = {
   background: 'Background picture',
@@ -75,7 +81,8 @@ const attributes: Record<string, string> = {
   port: 'Port',
   imageId: 'Picture of the project',
   rect: 'Place and size',
-  isBackground: 'Below the others',
+  moved: 'Moved by',
+  isBackground: 'Only to be looked at: sensors do not see it',
   sizeUnit: 'Unit of lengths',
   realisticPhysics: 'Realistic physics',
   realisticSensors: 'Realistic sensors',
@@ -257,7 +264,11 @@ export const en = {
   show: 'Change',
   toStart: 'Put the robot at its start place',
   nothing: 'nothing',
-  readOnly: 'Its strokes are kept as they are.',
+  anotherPicture: 'Choose another picture',
+  pictureHint: 'A file in PNG, JPEG or SVG; it can also be dropped on the sheet or pasted.',
+  noImage: 'The project has no picture with this name: nothing is shown.',
+  noPicture: (name: string, why: string) => `${name} is not added: ${why}`,
+  notPictures,
   degrees: 'degrees',
   byDefault: (text: string) => `without: ${text}`,
   width: 'width',

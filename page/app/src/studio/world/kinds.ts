@@ -2,6 +2,7 @@
 //
 // Owns that table. Knows no text and no element of the page; lengths are pixels of TRIK Studio.
 
+import { MOTORS, PORTS, SENSORS, sensorPort } from './sensors';
 import { type Spot, Values, colour } from './units';
 
 /** What an attribute takes, which decides what its field is. */
@@ -33,7 +34,10 @@ export interface AttributeFacts {
   isPhysics?: boolean;
 }
 
-/** What is where, as attributes have it: `x:y` in one, two of one number, or the lower right corner of a size. */
+/**
+ * What is where, as attributes have it: `x:y` in one, two of one number, or the lower right corner of a size. Pieces are a path
+ * that the model has made of tags in the thing.
+ */
 export type Grip =
   | { is: 'point'; name: string }
   | { is: 'pair'; name: string; names: readonly [string, string] }
@@ -45,7 +49,8 @@ export type Grip =
       least: number;
     }
   | { is: 'box'; name: string }
-  | { is: 'turn'; name: string };
+  | { is: 'turn'; name: string }
+  | { is: 'pieces'; name: string };
 
 /** How a thing is drawn. */
 export interface Outline {
@@ -60,8 +65,12 @@ export interface Outline {
   captionAt?: Spot;
 }
 
-/** How a new one is made of two places: from one to the other, as a rectangle of both, or at the first. */
-export type Creation = 'span' | 'curve' | 'corners' | 'size' | 'spot' | 'robot' | 'start';
+/**
+ * How a new one is made of two places: from one to the other, as a rectangle of both, or at the first. Strokes are made of all
+ * places between them, a picture of a file of the person.
+ */
+export type Creation =
+  'span' | 'curve' | 'corners' | 'size' | 'spot' | 'robot' | 'start' | 'strokes' | 'picture';
 
 export const KIND_NAMES = [
   'background',
@@ -271,9 +280,12 @@ const PICTURE: readonly AttributeFacts[] = [
   ID,
   facts('imageId', 'text'),
   facts('rect', 'box', '0'),
-  facts('position', 'point', '0'),
+  facts('position', 'point', '0', { title: 'moved' }),
   facts('isBackground', 'truth', 'false'),
 ];
+
+/** Whether a thing shows an image. */
+export const isPicture = ({ kind }: { kind: Kind }): boolean => kind.attributes === PICTURE;
 
 /** The attribute in which a picture has its place: old worlds have another one. */
 export const pictureRect = (values: Values): string =>
@@ -296,6 +308,8 @@ function picture(name: 'background' | 'image', list: string): Kind {
     attributes: PICTURE,
     moves: [{ is: 'box', name: 'rect' }],
     grips: [{ is: 'box', name: 'rect' }],
+    // New ones stand in the list: TRIK Studio writes no other.
+    ...(name === 'image' ? { creation: 'picture' as const } : {}),
     outline(values) {
       const [x, y, width, height] = pictureBox(values);
       const path = rectangle(x, y, width, height);
@@ -333,38 +347,6 @@ const regions = (name: 'regionRectangle' | 'regionEllipse', type: string, path: 
 /** The side of a robot, which is a square by default. */
 export const ROBOT_PX = 50;
 
-/** Ports, as far as a robot has them, with the variables that show them. */
-const PORTS = {
-  A1: 'sensorA1',
-  A2: 'sensorA2',
-  A3: 'sensorA3',
-  A4: 'sensorA4',
-  A5: 'sensorA5',
-  A6: 'sensorA6',
-  D1: 'sensorD1',
-  D2: 'sensorD2',
-  LineSensorPort: 'lineSensor',
-  ColorSensorPort: 'colorSensor',
-  ObjectSensorXPort: 'objectSensorX',
-  LidarPort: 'lidar',
-};
-export const sensorPort = (name: keyof typeof PORTS): string => `${name}###input######${PORTS[name]}`;
-const MOTORS = ['M1', 'M2', 'M3', 'M4'].map((name) => `${name}###output######${name}`);
-
-const PARTS = 'trik::robotModel::parts::';
-const ANALOG = ['A1', 'A2', 'A3', 'A4', 'A5', 'A6'] as const;
-/** Types of sensors, and the ports that each goes to. */
-export const SENSORS: readonly { type: string; ports: readonly (keyof typeof PORTS)[] }[] = [
-  { type: `${PARTS}TrikInfraredSensor`, ports: ANALOG },
-  { type: `${PARTS}TrikSonarSensor`, ports: ['D1', 'D2'] },
-  { type: `${PARTS}TrikLightSensor`, ports: ANALOG },
-  { type: `${PARTS}TrikTouchSensor`, ports: ANALOG },
-  { type: `${PARTS}TrikLineSensor`, ports: ['LineSensorPort'] },
-  { type: `${PARTS}TrikColorSensor`, ports: ['ColorSensorPort'] },
-  { type: `${PARTS}TrikObjectSensor`, ports: ['ObjectSensorXPort'] },
-  { type: 'kitBase::robotModel::robotParts::LidarSensor', ports: ['LidarPort'] },
-];
-
 /** A beam ahead of what stands somewhere and looks somewhere, as long as this. */
 const arrow = ([x, y]: Spot, length: number): string => `M${x} ${y}h${length}m-6 -4l6 4l-6 4`;
 
@@ -377,10 +359,12 @@ export const KINDS: readonly Kind[] = [
     tag: 'stylus',
     list: 'colorFields',
     attributes: [ID, ...PEN],
-    moves: [],
+    moves: [{ is: 'pieces', name: 'pieces' }],
     grips: [],
     // Its pieces are tags in it, which the model puts together.
     outline: (values) => pen(values, values.text('pieces', 'M0 0'), false),
+    creation: 'strokes',
+    made: { stroke: '#000000', 'stroke-width': 6 },
   },
   corners('rectangle', rectangle),
   corners('ellipse', ellipse),

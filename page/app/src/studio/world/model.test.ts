@@ -17,7 +17,7 @@ import {
   withSetting,
   without,
 } from './model';
-import { SENSORS, sensorPort } from './kinds';
+import { SENSORS, sensorPort } from './sensors';
 import { colour, written } from './units';
 import { spliced } from './xml';
 

@@ -12,6 +12,7 @@ import {
   pictureBox,
   pictureRect,
 } from './kinds';
+import { PIECES, beginOf, carriedTo, movedPieces, pathOf, pieces, strokes, wave } from './strokes';
 import { type Spot, UNITS, type Unit, Values } from './units';
 import {
   type Splice,
@@ -165,10 +166,10 @@ class Gathered {
     const kind = this.#kinds.get(tag.name)?.find((one) => is(one, tag));
     if (!kind || !isHere(kind)) return;
     const more: [string, string][] = [];
-    if (kind.name === 'stylus') more.push(['pieces', this.#strokes(tag)]);
+    if (kind.name === 'stylus') more.push([PIECES, this.#strokes(tag)]);
     // What it is the outline of stands before it.
     if (kind.name === 'regionBound')
-      more.push(['pieces', this.#drawn.get(value(tag, 'boundItem') ?? '') ?? '']);
+      more.push([PIECES, this.#drawn.get(value(tag, 'boundItem') ?? '') ?? '']);
     const key = this.#add(kind, tag, more);
     const id = value(tag, 'id');
     const added = this.items.at(-1);
@@ -178,8 +179,7 @@ class Gathered {
 
   /** What was drawn by hand, as a path. */
   #strokes(tag: Tag): string {
-    const pieces = tag.children.filter(({ name }) => name === 'stylusLine');
-    const paths = pieces.map((piece) => {
+    const paths = pieces(tag).map((piece) => {
       const values = new Values(texts(piece), this.scale);
       return line(values.point('begin'), values.point('end'));
     });
@@ -214,8 +214,10 @@ export function changed(
   const [item, tag] = [byKey.get(key), tags.get(key)];
   if (!item || !tag) return [];
   const within = new Map(item.kind.attributes.map((one) => [one.name, one.within]));
-  const own = Object.entries(changes).filter(([name]) => !within.get(name));
+  const own = Object.entries(changes).filter(([name]) => !within.get(name) && name !== PIECES);
   const splices = set(tag, Object.fromEntries(own));
+  const way = changes[PIECES];
+  if (way !== undefined) splices.push(...movedPieces(item, tag, way));
   for (const [name, next] of Object.entries(changes)) {
     const inner = within.get(name);
     if (!inner) continue;
@@ -288,6 +290,8 @@ export function moved(
       const [x = 0, y = 0, width = 0, height = 0] = values.lengths(name, 4);
       return { [name]: values.writePoint(x + right, y + down, width, height) };
     }
+    case 'pieces':
+      return { [PIECES]: carriedTo(values.text(PIECES), right, down) };
     case 'turn':
       return {};
   }
@@ -329,6 +333,8 @@ export function gripAt({ values, kind }: Item, grip: Grip, reach: number): Spot 
       const [x, y, width, height] = pictureBox(values);
       return [x + width, y + height];
     }
+    case 'pieces':
+      return beginOf(values.text(PIECES));
     case 'turn': {
       const { turn } = kind.outline(values);
       const radians = ((turn?.angle ?? 0) * Math.PI) / 180;
@@ -380,16 +386,25 @@ export function sketched(kind: Kind, from: Spot, to: Spot, scale: number): Value
   return new Values(attributes, scale);
 }
 
+/** What a new thing has beside its places: the id of the image that it shows, and where a hand went between its ends. */
+export interface Contents {
+  imageId?: string;
+  way?: readonly Spot[];
+}
+
 /** A new thing between two places, and the key that it will have. */
 export function added(
   found: WorldModel,
   kind: Kind,
   from: Spot,
   to: Spot,
+  { imageId, way }: Contents = {},
 ): { splices: Splice[]; key: string } {
-  const values = sketched(kind, from, to, UNITS[found.unit].pixels);
+  const { scale, texts: own } = sketched(kind, from, to, UNITS[found.unit].pixels);
+  const values = new Values(imageId === undefined ? own : { imageId, ...own }, scale);
   const key = `${kind.name} ${found.items.filter((item) => item.kind === kind).length}`;
   const written = Object.entries(values.texts)
+    .filter(([name]) => name !== PIECES)
     .map(([name, text]) => ` ${name}="${encoded(text)}"`)
     .join('');
   if (kind.creation === 'robot') {
@@ -404,7 +419,9 @@ export function added(
   }
   const id = freeId(found, kind.tag);
   const world = child(found.root, 'world');
-  const xml = `<${kind.tag} id="${id}"${written}/>`;
+  const inner = kind.creation === 'strokes' ? strokes(values, way ?? wave(from, to)) : '';
+  const open = `<${kind.tag} id="${id}"${written}`;
+  const xml = inner ? `${open}>${inner}\n</${kind.tag}>` : `${open}/>`;
   return { splices: world ? inList(found, world, kind.list, xml) : [], key };
 }
 
@@ -452,6 +469,13 @@ function places(values: Values, { creation }: Kind, [x, y]: Spot, [toX, toY]: Sp
       return { position: values.writePoint(x - ROBOT_PX / 2, y - ROBOT_PX / 2), direction: '0' };
     case 'start':
       return { x: values.write(x), y: values.write(y), direction: '0' };
+    case 'picture': {
+      const [left, top] = [Math.min(x, toX), Math.min(y, toY)];
+      const rect = values.writePoint(left, top, Math.abs(toX - x), Math.abs(toY - y));
+      return { rect, position: values.writePoint(0, 0), isBackground: 'false' };
+    }
+    case 'strokes':
+      return { [PIECES]: pathOf(wave([x, y], [toX, toY])) };
     default:
       return {};
   }
