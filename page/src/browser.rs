@@ -222,6 +222,17 @@ impl Listener {
                 self.moves.rest();
                 Ok(())
             }
+            Order::Pair(code) => {
+                let done = self
+                    .shared
+                    .settings
+                    .guests
+                    .pair(self.who.address.ip(), &code);
+                let why = done.err().map(|why| Error::Pairing(why).words());
+                // Not among other refusals: the page waits for this answer.
+                let _ = self.news.try_send(News::Paired(why));
+                Ok(())
+            }
             Order::Stop => {
                 // The programs by the robot itself, what moves by the tree, should the robot's daemon not be there.
                 self.stop.notify_one();

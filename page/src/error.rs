@@ -2,6 +2,7 @@
 //!
 //! Owns the errors of this crate. Knows no command.
 
+use crate::guests::NotPaired;
 use crate::limits::MISTAKES_MAX;
 use lang_text::problem::{Locale, Problem, Words};
 use std::fmt;
@@ -72,6 +73,8 @@ pub enum Error {
     Taken(String),
     /// This computer may look only.
     Unpaired,
+    /// A pairing code was of no use.
+    Pairing(NotPaired),
     /// The robot's control port cannot be reached.
     Robot(String),
     /// It is not done now.
@@ -117,6 +120,7 @@ impl Error {
             | Self::World(_)
             | Self::Taken(_)
             | Self::Unpaired
+            | Self::Pairing(NotPaired::Code)
             | Self::Name(_)
             | Self::NewName(_)
             | Self::NoFolder
@@ -126,7 +130,10 @@ impl Error {
             | Self::Text(_)
             | Self::Fixed
             | Self::Configuration(_) => Blame::Caller,
-            Self::Thread(_) | Self::Robot(_) | Self::Busy(_) => Blame::Machine,
+            Self::Thread(_)
+            | Self::Robot(_)
+            | Self::Busy(_)
+            | Self::Pairing(NotPaired::Robot(_)) => Blame::Machine,
         }
     }
 }
@@ -159,8 +166,14 @@ impl fmt::Display for Error {
             ),
             Self::Taken(who) => write!(f, "{who} is in control; take control first"),
             Self::Unpaired => f.write_str(
-                "this computer may only look: press Enter on the robot within 30 s to pair it, and try again",
+                "this computer may only look: press Enter on the robot within 30 s to pair it, and try again, or type its pairing code",
             ),
+            Self::Pairing(NotPaired::Code) => f.write_str(
+                "this is no pairing code of the robot, or no longer: get a new one there by `trikd pair --code`",
+            ),
+            Self::Pairing(NotPaired::Robot(why)) => {
+                write!(f, "the code is right, but the robot cannot pair: {why}")
+            }
             Self::Name(name) => write!(f, "there is no program '{name}'"),
             Self::NewName(name) => write!(
                 f,

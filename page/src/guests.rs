@@ -17,6 +17,23 @@ pub trait Guests: Send + Sync {
 
     /// It wants to do something and may not: a person at the robot may say yes now.
     fn asks(&self, ip: IpAddr);
+
+    /// Somebody has typed a pairing code there. A program that gives out none takes none.
+    ///
+    /// # Errors
+    /// It may do no more than before.
+    fn pair(&self, _: IpAddr, _: &str) -> Result<(), NotPaired> {
+        Err(NotPaired::Code)
+    }
+}
+
+/// Why a pairing code changes nothing.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum NotPaired {
+    /// It is none that counts.
+    Code,
+    /// The robot cannot pair, in its words.
+    Robot(String),
 }
 
 /// Every computer may do everything.
@@ -33,4 +50,8 @@ impl Guests for Everybody {
     }
 
     fn asks(&self, _: IpAddr) {}
+
+    fn pair(&self, _: IpAddr, _: &str) -> Result<(), NotPaired> {
+        Ok(())
+    }
 }

@@ -56,6 +56,6 @@ mod word;
 mod words;
 pub mod world;
 
-pub use guests::{Everybody, Guests};
+pub use guests::{Everybody, Guests, NotPaired};
 pub use server::Page;
 pub use shared::Settings;

@@ -41,6 +41,8 @@ pub enum Order {
     Take,
     /// Not to be in control any more.
     Leave,
+    /// A pairing code that somebody has typed.
+    Pair(String),
     /// Everything to rest. Everybody may.
     Stop,
 }
@@ -77,6 +79,7 @@ impl Order {
             ),
             "take" => Self::Take,
             "leave" => Self::Leave,
+            "pair" => Self::Pair(text("code").ok_or_else(why)?),
             "stop" => Self::Stop,
             _ => return Err(why()),
         };
@@ -132,6 +135,8 @@ pub enum News {
     Configured(Option<Words>),
     /// A program has another name; None: it is gone.
     Programs(String, Option<String>),
+    /// This computer may do things from now on; or a pairing code was refused, and why.
+    Paired(Option<Words>),
     /// Something was not done.
     Refused(Words),
     /// What stands still in the world.
@@ -206,6 +211,7 @@ impl News {
                 ],
             ),
             Self::Configured(why) => object("configured", vec![("why", said(why))]),
+            Self::Paired(why) => object("paired", vec![("why", said(why))]),
             Self::Refused(why) => object("refused", vec![("why", why.in_locale(locale).into())]),
             Self::Programs(name, to) => object(
                 "programs",
@@ -294,6 +300,10 @@ mod tests {
             Order::Look(true)
         );
         assert_eq!(Order::parse(r#"{"do":"stop"}"#).unwrap(), Order::Stop);
+        assert_eq!(
+            Order::parse(r#"{"do":"pair","code":"123456"}"#).unwrap(),
+            Order::Pair("123456".to_owned())
+        );
         for bad in [
             "",
             "{}",
@@ -303,6 +313,7 @@ mod tests {
             r#"{"do":"write","path":"a","value":30}"#,
             r#"{"do":"look","world":1}"#,
             r#"{"do":"fly"}"#,
+            r#"{"do":"pair","code":123456}"#,
             &format!(
                 r#"{{"do":"world","order":"{}"}}"#,
                 "x".repeat(limits::WORLD_BYTES_MAX)

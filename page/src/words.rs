@@ -3,6 +3,7 @@
 //! Owns the texts. The English ones stand with the errors.
 
 use crate::error::{Busy, Error};
+use crate::guests::NotPaired;
 use lang_text::problem::{Words, of_system};
 use std::io;
 
@@ -43,8 +44,15 @@ fn russian(error: &Error) -> String {
         }
         Error::Taken(who) => format!("роботом управляет {who}; сначала возьмите управление"),
         Error::Unpaired => {
-            "с этого компьютера можно только смотреть: нажмите Enter на роботе в течение 30 с и повторите"
+            "с этого компьютера можно только смотреть: нажмите Enter на роботе в течение 30 с и повторите или введите код сопряжения"
                 .to_owned()
+        }
+        Error::Pairing(NotPaired::Code) => {
+            "это не код сопряжения робота, или он больше не действует: новый даёт на роботе `trikd pair --code`"
+                .to_owned()
+        }
+        Error::Pairing(NotPaired::Robot(why)) => {
+            format!("код верен, но робот не может запомнить этот компьютер: {why}")
         }
         Error::Name(name) => format!("программы '{name}' нет"),
         Error::NewName(name) => format!(
@@ -78,6 +86,8 @@ mod tests {
         let all = [
             Error::Taken("10.0.0.1".to_owned()),
             Error::Unpaired,
+            Error::Pairing(NotPaired::Code),
+            Error::Pairing(NotPaired::Robot("full".to_owned())),
             Error::NoFolder,
             Error::NoWorld,
             Error::Fixed,

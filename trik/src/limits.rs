@@ -119,7 +119,7 @@ pub const WALL_SECONDS_MAX: f64 = 3600.0;
 pub const WORKER_GRACE_MS: u32 = 5_000;
 /// What a run gets beyond its real time to end by itself before its worker is killed, in milliseconds: its processes are
 /// killed in it, however many there are, and on a busy machine.
-pub const RUN_GRACE_MS: u32 = 2_000;
+pub const RUN_GRACE_MS: u32 = 10_000;
 /// Solutions of one command.
 pub const SOLUTIONS_MAX: usize = 100_000;
 /// Fields of one command.

@@ -3,8 +3,13 @@
 //! Owns both lists and the file of paired addresses. Both are off by default: then everybody may do everything, which
 //! is what desktop programs expect. Knows no sockets and no requests.
 
+mod code;
+
+pub use code::Refused;
+
 use crate::limits;
 use crate::protocol::mail::plain;
+use code::Code;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::io;
@@ -95,6 +100,8 @@ pub struct Access {
     file: PathBuf,
     /// Who asked last: a key that is pressed soon after that pairs it.
     asked: Mutex<Option<PairingRequest>>,
+    /// The code that was given out last.
+    code: Mutex<Option<Code>>,
     /// The page on this machine asks for its browsers, after it has asked here about each of them.
     has_page: bool,
 }
@@ -120,6 +127,7 @@ impl Access {
             paired,
             file: file.to_owned(),
             asked: Mutex::default(),
+            code: Mutex::default(),
             has_page: false,
         })
     }
@@ -206,20 +214,49 @@ impl Access {
         }
     }
 
+    /// A new pairing code; the one before counts no longer.
+    ///
+    /// # Errors
+    /// Pairing is off; the system has no random numbers.
+    pub fn new_code(&self) -> io::Result<String> {
+        self.set()?;
+        let code = Code::new()?;
+        let digits = code.digits().to_owned();
+        *held(&self.code) = Some(code);
+        Ok(digits)
+    }
+
+    /// Pairs a computer at which somebody has typed the code.
+    ///
+    /// # Errors
+    /// It is another one, or counts no longer; as [`Access::pair`].
+    pub fn pair_by(&self, ip: IpAddr, typed: &str) -> Result<(), Refused> {
+        let mut code = held(&self.code);
+        if !code.as_mut().is_some_and(|code| code.is(typed)) {
+            return Err(Refused::Wrong);
+        }
+        *code = None;
+        drop(code);
+        self.pair(ip).map_err(Refused::Unpaired)
+    }
+
+    /// The paired computers.
+    fn set(&self) -> io::Result<&Mutex<BTreeSet<IpAddr>>> {
+        let why = "pairing is off: everybody may run programs";
+        let off = || io::Error::new(io::ErrorKind::InvalidInput, why);
+        self.paired.as_ref().ok_or_else(off)
+    }
+
     /// Pairs a computer.
     ///
     /// # Errors
     /// As [`Access::pair_last`]; `InvalidInput` if there are too many, or pairing is off.
     pub fn pair(&self, ip: IpAddr) -> io::Result<()> {
-        let refused = |why: &str| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        let Some(paired) = &self.paired else {
-            return refused("pairing is off: everybody may run programs");
-        };
-        let mut paired = held(paired);
+        let mut paired = held(self.set()?);
         if paired.len() >= limits::PAIRED && !paired.contains(&plain(ip)) {
-            return refused(
-                "too many computers are paired: remove some from the file 'paired' and start again",
-            );
+            let why =
+                "too many computers are paired: remove some from the file 'paired' and start again";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         }
         paired.insert(plain(ip));
         let lines: Vec<_> = paired.iter().map(|ip| format!("{ip}\n")).collect();
@@ -311,6 +348,31 @@ mod tests {
         assert!(!access.may_control(owner) && !access.may_control(owner));
         assert_eq!(access.pair_last().unwrap(), Some(owner));
         assert!(!access.may_control(thief));
+    }
+
+    #[test]
+    fn a_code_pairs_one_computer_and_the_newest_one_counts() {
+        let scratch = tempdir().unwrap();
+        let file = scratch.path().join("paired");
+        let (owner, other): (IpAddr, IpAddr) =
+            ("10.0.0.7".parse().unwrap(), "10.0.0.8".parse().unwrap());
+        let open = Access::new(Vec::new(), false, &file).unwrap();
+        let why = open.new_code().unwrap_err().to_string();
+        assert!(why.contains("pairing is off"), "{why}");
+        let access = Access::new(Vec::new(), true, &file).unwrap();
+        assert!(matches!(
+            access.pair_by(owner, "000000"),
+            Err(Refused::Wrong)
+        ));
+        let old = access.new_code().unwrap();
+        let mut new = access.new_code().unwrap();
+        while new == old {
+            new = access.new_code().unwrap();
+        }
+        assert!(matches!(access.pair_by(owner, &old), Err(Refused::Wrong)));
+        access.pair_by(owner, &new).unwrap();
+        assert!(access.is_paired(owner) && !access.is_paired(other));
+        assert!(matches!(access.pair_by(other, &new), Err(Refused::Wrong)));
     }
 
     #[test]

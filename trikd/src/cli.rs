@@ -47,13 +47,17 @@ enum Command {
         #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
         run: PathBuf,
     },
-    /// Pair a computer with the robot, as Enter on the robot does.
+    /// Pair a computer with the robot, as Enter on the robot does, or give out a code that pairs one.
     Pair {
         /// The directory of the running trikd.
         #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
         run: PathBuf,
         /// The address of the computer.
-        address: IpAddr,
+        #[arg(required_unless_present = "code", conflicts_with = "code")]
+        address: Option<IpAddr>,
+        /// Print a code: the computer on which it is typed into the page or the studio of the robot within 10 min is paired.
+        #[arg(long)]
+        code: bool,
     },
     /// The serving process.
     #[command(hide = true)]
@@ -154,9 +158,10 @@ fn perform(command: Command) -> Result<ExitCode, Error> {
             return guardian::run(&settings.tree, &arguments);
         }
         Command::Status { run } => print!("{}", status::ask(&run, "status")?),
-        Command::Pair { run, address } => {
-            print!("{}", status::ask(&run, &format!("pair {address}"))?)
-        }
+        Command::Pair { run, address, code } => match address {
+            Some(ip) if !code => print!("{}", status::ask(&run, &format!("pair {ip}"))?),
+            _ => print!("{}", status::ask(&run, status::CODE)?),
+        },
         Command::Daemon {
             guardian,
             restarts,

@@ -80,6 +80,12 @@ pub const PACE_FEW: u32 = 500;
 pub const PACE_PAUSE_US: u64 = 1000;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
+/// Milliseconds for which a pairing code counts.
+pub const CODE_MS: u64 = 600_000;
+/// Digits of a pairing code.
+pub const CODE_DIGITS: u32 = 6;
+/// Wrong codes, of all computers together, after which a code counts no longer.
+pub const CODES_WRONG_MAX: u32 = 5;
 /// Paired computers.
 pub const PAIRED: usize = 64;
 /// Bytes of the name of a program.

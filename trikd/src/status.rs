@@ -25,6 +25,8 @@ use tokio::net::{UnixListener, UnixStream};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
 const NAME: &str = "status.sock";
+/// The question for a pairing code.
+pub const CODE: &str = "code";
 
 /// The socket in a directory.
 #[derive(Debug)]
@@ -176,6 +178,10 @@ async fn answer(status: &Status, mut stream: UnixStream) -> io::Result<()> {
                 |()| format!("paired {ip}\n"),
             ),
             Err(_) => format!("refused: '{ip}' is no address\n"),
+        },
+        None if words == CODE => match status.access.new_code() {
+            Ok(code) => format!("{code}\n"),
+            Err(error) => format!("refused: {error}\n"),
         },
         None => status.describe(),
     };

@@ -211,3 +211,20 @@ test('each program of the library is opened, drawn, saved and opened again as th
   expect(await barriers(page)).toEqual([]);
   await page.context().close();
 });
+
+test('blocks of one language are not pasted into a program of the other', async () => {
+  const page = await look.open(site.url);
+  await nodes(page).first().waitFor();
+  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await eventually('it is there', async () => (await nodes(page).count()) === 3);
+  await nodes(page).nth(2).click();
+  await page.keyboard.press('Control+c');
+  await page.getByRole('button', { name: 'New data flow' }).click();
+  await page.getByRole('button', { name: 'Discard the changes' }).click();
+  await page.getByText('Drag blocks here').waitFor();
+  await page.locator('.svelte-flow__pane').click();
+  await page.keyboard.press('Control+v');
+  await page.getByText('What was copied are blocks of control flow').waitFor();
+  expect(await nodes(page).count()).toBe(0);
+  await page.context().close();
+});

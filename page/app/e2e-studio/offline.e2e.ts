@@ -32,7 +32,7 @@ test('once it was open it works without its server', async () => {
   await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
   await expect.poll(() => blocks.count()).toBe(3);
   await page.getByRole('button', { name: 'Run', exact: true }).click();
-  await page.getByText('The task is not done.').waitFor();
+  await page.getByText('The program has ended by a mistake.').waitFor();
   expect(outside).toEqual([]);
   await page.context().close();
 });

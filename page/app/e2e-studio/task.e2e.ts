@@ -62,7 +62,7 @@ test('the task is open, its world stays, and a program of a pupil is judged in i
   await page.keyboard.press('Enter');
   await page.keyboard.press('Delete');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
-  await page.locator('.verdict').getByText('The task is not done.').waitFor();
+  await page.locator('.verdict').getByText('The program has ended by a mistake.').waitFor();
   expect(look.complaints).toEqual([]);
   await page.context().close();
 });

@@ -153,3 +153,5 @@ export const PICTURE_BYTES_MAX = 2 << 20;
 export const PICTURE_SIDE_PX_MAX = 2000;
 /** Pieces of what is drawn by hand at once. */
 export const STROKES_MAX = 2000;
+/** Blocks of a sheet on which links go around others: each link is held against all of them. */
+export const DETOUR_BLOCKS_MAX = 1000;

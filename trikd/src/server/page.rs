@@ -2,13 +2,14 @@
 //!
 //! Owns where it is served, and which computers may use it: those that may use the other ports.
 
-use crate::access::Access;
+use crate::access::{Access, Refused};
 use crate::blame::Os;
 use crate::error::Error;
+use crate::log;
 use crate::panics;
 use crate::protocol::mail::plain;
 use crate::settings::Settings;
-use page::{Guests, Page};
+use page::{Guests, NotPaired, Page};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,6 +35,21 @@ impl Guests for Visitors {
 
     fn asks(&self, ip: IpAddr) {
         self.access.remember(ip);
+    }
+
+    fn pair(&self, ip: IpAddr, code: &str) -> Result<(), NotPaired> {
+        match self.access.pair_by(plain(ip), code) {
+            Ok(()) => {
+                tracing::info!(target: log::CLIENTS, "{ip} is paired by a code");
+                Ok(())
+            }
+            // Not told: there may be many of them.
+            Err(Refused::Wrong) => Err(NotPaired::Code),
+            Err(Refused::Unpaired(why)) => {
+                tracing::warn!(target: log::CLIENTS, "{ip} is not paired: {why}");
+                Err(NotPaired::Robot(why.to_string()))
+            }
+        }
     }
 }
 

@@ -67,3 +67,31 @@ fn an_unpaired_computer_may_look_and_stop_and_may_run_programs_when_it_is_paired
     );
     assert_eq!(robot.home.content("state/paired"), b"127.0.0.1\n");
 }
+
+#[test]
+fn a_pairing_code_is_given_out_where_the_robot_is_and_only_if_it_pairs() {
+    let code = |robot: &crate::rig::Robot, words: &[&str]| {
+        let output = Command::new(trikd())
+            .arg("pair")
+            .args(words)
+            .arg("--run")
+            .arg(robot.home.path("run"))
+            .output()
+            .unwrap();
+        let texts = [output.stdout, output.stderr];
+        let [said, why] = texts.map(|text| String::from_utf8_lossy(&text).into_owned());
+        (said.trim().to_owned(), why)
+    };
+    let (said, why) = code(&robot(&["--pair"]), &["--code"]);
+    assert!(
+        said.len() == 6 && said.parse::<u32>().is_ok(),
+        "{said} {why}"
+    );
+    let open = robot(&[]);
+    let (said, why) = code(&open, &["--code"]);
+    assert!(said.is_empty() && why.contains("pairing is off"), "{why}");
+    for words in [&["--code", "10.0.0.1"][..], &[]] {
+        let (said, why) = code(&open, words);
+        assert!(said.is_empty() && why.contains("ADDRESS"), "{why}");
+    }
+}

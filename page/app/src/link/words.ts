@@ -15,6 +15,8 @@ export type Order =
   | { do: 'look'; world: boolean }
   | { do: 'take' }
   | { do: 'leave' }
+  /** Digits that somebody has who is at the robot. */
+  | { do: 'pair'; code: string }
   | { do: 'stop' };
 
 /** What it is told. */
@@ -36,6 +38,8 @@ export type News =
   | { is: 'written'; path: string; param: string | null; value: string; why: string | null }
   | { is: 'stages'; path: string; at_s: number; tuples: string[] }
   | { is: 'configured'; why: string | null }
+  /** This computer may do things from now on; or the code was refused. */
+  | { is: 'paired'; why: string | null }
   /** A program has another name; null: it is gone. */
   | { is: 'programs'; name: string; to: string | null }
   | { is: 'refused'; why: string }

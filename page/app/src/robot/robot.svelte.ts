@@ -68,6 +68,8 @@ export class Robot {
   /** The studio is there, at `/studio/`. */
   hasStudio = $state(false);
   mayDrive = $state(true);
+  /** Why the last pairing code was refused. */
+  unpaired = $state('');
   isInControl = $state(false);
   /** The address of the browser that is in control; empty if none is. */
   holder = $state('');
@@ -226,6 +228,12 @@ export class Robot {
     this.link.order({ do: 'write', path, value });
   }
 
+  /** Somebody has typed a pairing code. */
+  pair(code: string): void {
+    this.unpaired = '';
+    this.link.order({ do: 'pair', code });
+  }
+
   // What the link says.
 
   connected(is: boolean): void {
@@ -272,6 +280,10 @@ export class Robot {
         break;
       case 'refused':
         this.refusal = heard(news.why);
+        break;
+      case 'paired':
+        this.unpaired = news.why ?? '';
+        this.mayDrive ||= news.why === null;
         break;
       case 'configured':
         this.configuration.configured(news.why);

@@ -9,6 +9,7 @@ export const en = {
   crashed: (why: string) =>
     `Something in the studio has failed: ${why}. Load the page again; what you drew until half a second before is kept.`,
   file: 'File',
+  more: 'Project',
   blank: 'New',
   open: 'Open',
   save: 'Save',
@@ -66,6 +67,12 @@ export const en = {
   remove: 'Remove',
   copy: 'Copy',
   paste: 'Paste',
+  otherLanguage: {
+    diagram:
+      'What was copied are blocks of control flow, and this program is one of data flow: nothing was pasted.',
+    dataflow:
+      'What was copied are blocks of data flow, and this program is one of control flow: nothing was pasted.',
+  },
   connectTo: 'Connect to',
   connect: 'Connect',
   linkPoint: 'Start of a link',
@@ -128,6 +135,12 @@ export const en = {
     failed: 'The task is not done.',
     broken: 'It cannot be run.',
   },
+  /** Of a task that is not done, if there is more to say of it. */
+  failures: {
+    program: 'The program has ended by a mistake.',
+    structure: 'The program is not built as the task wants it.',
+    model_time: 'The task is not done in its time.',
+  } as Partial<Record<string, string>>,
   after: (seconds: string) => `Time: ${seconds} s.`,
   score: (points: number) => `Points: ${points}.`,
   manyRuns: 'Many runs',

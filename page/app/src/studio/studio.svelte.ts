@@ -126,6 +126,12 @@ export class Studio {
     return this.#byKind.get(kind);
   }
 
+  /** Whether only the other language has such blocks. Those of other kits neither has. */
+  #isOfOther(kind: string): boolean {
+    const other = this.#palettes[this.isFlow ? 'diagram' : 'dataflow'];
+    return !this.facts(kind) && other.some((one) => one.kind === kind);
+  }
+
   block(id: string): DrawnBlock | undefined {
     return this.sheet?.blocks.find((block) => block.id === id);
   }
@@ -322,6 +328,10 @@ export class Studio {
     // Of another page it may be anything; the draft refuses what is no block.
     const piece = other ?? (await this.#piece);
     if (!piece) return;
+    if (piece.blocks.some(({ kind }) => this.#isOfOther(kind))) {
+      this.refusal = words.otherLanguage[this.isFlow ? 'diagram' : 'dataflow'];
+      return;
+    }
     if (other) this.#copied = text;
     const blocks = piece.blocks.map((block) => ({
       ...block,

@@ -23,6 +23,9 @@ export const en = {
   takeControl: 'Take control',
   leaveControl: 'Leave control',
   onlyLook: 'This computer may only look',
+  pairCode: 'Pairing code',
+  pairHint: 'Six digits, from the robot: trikd pair --code',
+  pair: 'Pair',
   takeFirst: (who: string) => `${who}: take control first.`,
   dismiss: 'Dismiss',
 

@@ -21,6 +21,9 @@ export const ru: Words = {
   leaveControl: 'Отдать управление',
   takeFirst: (who) => `${who}: сначала возьмите управление.`,
   onlyLook: 'Этот компьютер может только смотреть',
+  pairCode: 'Код сопряжения',
+  pairHint: 'Шесть цифр с робота: trikd pair --code',
+  pair: 'Связать',
   dismiss: 'Закрыть',
 
   timeOf: 'Время записи',

@@ -339,7 +339,7 @@ print(forked)
     board.file("class/b.py", good);
     board.file("class/c.py", good);
     let words =
-        "check class --field far.xml --jobs 3 --wall-limit 120 --results - --require-sandbox";
+        "check class --field far.xml --jobs 3 --wall-limit 20 --results - --require-sandbox";
     let output = trik(&board, &words.split(' ').collect::<Vec<_>>());
     assert_eq!(
         output.stdout.matches("\"printed\":[\"300\"]").count(),

@@ -9,7 +9,7 @@ export interface Box {
   height: number;
 }
 
-type Spot = [number, number];
+export type Spot = [number, number];
 
 export interface Route {
   d: string;
@@ -22,7 +22,7 @@ export interface Route {
 /** How far two links in both directions are apart, in px. */
 const APART_PX = 14;
 
-function middle({ x, y, width, height }: Box): Spot {
+export function middle({ x, y, width, height }: Box): Spot {
   return [x + width / 2, y + height / 2];
 }
 

@@ -10,6 +10,11 @@ test.each([
   expect(studioAt(text)).toBe(address);
 });
 
+test('a pairing code goes along, and only as what it is', () => {
+  expect(studioAt('robot', ' 482 913 ')).toBe('http://robot:8000/studio/?code=482913');
+  expect(studioAt('robot', '1&x=#2')).toBe('http://robot:8000/studio/?code=1%26x%3D%232');
+});
+
 test.each([
   '',
   'a b',

@@ -7,10 +7,12 @@ const PORT = 8000;
 /** A name, four numbers, or an address of IPv6 in brackets, and perhaps a port. */
 const ADDRESS = /^(?:http:\/\/)?([a-z0-9._-]+|\[[0-9a-f:.]+\])(?::(\d{1,5}))?\/?$/i;
 
-/** The address of the studio of a robot; undefined if a person has written something else. */
-export function studioAt(text: string): string | undefined {
+/** The address of the studio of a robot, with a pairing code if there is one; undefined if a person has written something else. */
+export function studioAt(text: string, code = ''): string | undefined {
   const [, host, port = String(PORT)] = ADDRESS.exec(text.trim()) ?? [];
   if (host === undefined || Number(port) < 1 || Number(port) > 65_535) return undefined;
-  const address = `http://${host}:${port}/studio/`;
+  const digits = code.replace(/\s/g, '');
+  const query = digits ? `?code=${encodeURIComponent(digits)}` : '';
+  const address = `http://${host}:${port}/studio/${query}`;
   return URL.canParse(address) ? address : undefined;
 }

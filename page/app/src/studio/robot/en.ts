@@ -5,7 +5,7 @@ export const en = {
   connecting: 'The robot is not reached; it is tried again.',
   absent: (why: string) => `The robot takes no programs now: ${why}`,
   onlyLook:
-    'This computer may only look: pair it with the robot, by Enter on the robot after a first attempt.',
+    'This computer may only look: pair it with the robot, by Enter on the robot after a first attempt, or by its pairing code.',
   holder: (who: string) => `${who} is in control.`,
   take: 'Take control',
   send: 'Send and run',
@@ -37,6 +37,7 @@ export const en = {
 
   elsewhere: 'To a robot',
   address: 'Address of the robot',
+  code: 'Pairing code, if it wants one',
   go: 'Open there',
   goHint: 'The studio of the robot opens with this project; from there it is sent and run.',
   noAddress: 'An address is a name or numbers, as 192.168.77.1, with a port after a colon if it is not 8000.',

@@ -26,6 +26,8 @@ export class Robot implements Taker {
   /** Why it takes no programs; empty if it does. */
   absence = $state('');
   mayDrive = $state(true);
+  /** Why the last pairing code was refused. */
+  unpaired = $state('');
   isInControl = $state(false);
   holder = $state('');
   /** What was not done, and why. */
@@ -239,6 +241,22 @@ export class Robot implements Taker {
     return () => (isOver = true);
   }
 
+  /** A studio from elsewhere has sent the person here with a code. It counts once, so the address forgets it. */
+  #pairByAddress(): void {
+    const address = new URL(location.href);
+    const code = address.searchParams.get('code');
+    if (code === null) return;
+    address.searchParams.delete('code');
+    history.replaceState(null, '', address);
+    this.pair(code);
+  }
+
+  /** Somebody has typed a pairing code. */
+  pair(code: string): void {
+    this.unpaired = '';
+    this.#link.order({ do: 'pair', code });
+  }
+
   // What the link says.
 
   connected(is: boolean): void {
@@ -251,6 +269,7 @@ export class Robot implements Taker {
       case 'hello':
         this.name = news.name;
         this.mayDrive = news.drives;
+        if (!news.drives) this.#pairByAddress();
         break;
       case 'control':
         this.isInControl = news.mine;
@@ -267,6 +286,10 @@ export class Robot implements Taker {
         break;
       case 'refused':
         this.refusal = heard(news.why);
+        break;
+      case 'paired':
+        this.unpaired = news.why ?? '';
+        this.mayDrive ||= news.why === null;
         break;
       case 'written':
       case 'stages':

@@ -226,7 +226,8 @@ export class Runner {
   /** Puts the program as it is drawn now into the run. */
   async change(): Promise<void> {
     if (!this.#remote || !this.isRunning) return;
-    const bytes = await this.studio.bytes();
+    // Compressed it would be in force later.
+    const bytes = await this.studio.stored();
     if (!bytes || !this.isRunning) return;
     try {
       const why = await this.#remote.call('patch', this.studio.name, bytes, language);
