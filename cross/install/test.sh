@@ -5,6 +5,7 @@
 #
 #   scripts    the controller's scripts in a scratch folder, with every shell that it may have
 #   packages   what cross/install/pack.sh makes: contents, the same bytes again, refusals
+#   studio     what cross/install/studio.sh makes
 #   boot       init, inittab, installation, updates, reboots and removal on a small system like the controller's,
 #              in a namespace of its own
 #   deb        the package for this PC: lintian, installation and removal, on a throw-away layer over this system
@@ -18,11 +19,11 @@ set -euo pipefail
 help_if_asked "$@"
 parts=("$@")
 if [ "${#parts[@]}" -eq 0 ]; then
-    parts=(scripts packages boot deb)
+    parts=(scripts packages studio boot deb)
 fi
 for part in "${parts[@]}"; do
     case $part in
-    scripts | packages | boot | deb) ;;
+    scripts | packages | studio | boot | deb) ;;
     *)
         printf 'test.sh: unknown part %s; see --help\n' "$part" >&2
         exit 2

@@ -386,6 +386,23 @@ export class Look {
     return page;
   }
 
+  /** The memory of all processes of pages, each page of theirs counted by its share (PSS), in MiB. */
+  async memory_mib() {
+    const session = await this.#browser.newBrowserCDPSession();
+    const { processInfo } = await session.send('SystemInfo.getProcessInfo');
+    await session.detach();
+    const pages = processInfo.filter(({ type }) => type === 'renderer');
+    const shares = pages.map(({ id }) => {
+      try {
+        return Number(/^Pss:\s+(\d+)/m.exec(readFileSync(`/proc/${id}/smaps_rollup`, 'utf8'))?.[1] ?? 0);
+      } catch {
+        // It has ended meanwhile.
+        return 0;
+      }
+    });
+    return shares.reduce((sum, kib) => sum + kib, 0) / 1024;
+  }
+
   async end() {
     await this.#browser.close();
   }

@@ -147,6 +147,8 @@ export const RULE_FORMS_MAX = 2000;
 export const RULES_AFTER_MS = 400;
 /** Megabytes of a file that becomes a picture of a world. */
 export const PICTURE_FILE_MB_MAX = 32;
+/** Pixels of it: each one takes four bytes while it is made smaller. */
+export const PICTURE_PIXELS_MAX = 64 << 20;
 /** Bytes of a picture as it is kept: larger ones are made smaller. A floor takes 4 MiB. */
 export const PICTURE_BYTES_MAX = 2 << 20;
 /** Pixels of its longer side. */

@@ -2,7 +2,12 @@
 //
 // Owns the text in which a save keeps them, and how a file of a person becomes one. Knows no world.
 
-import { PICTURE_BYTES_MAX, PICTURE_FILE_MB_MAX, PICTURE_SIDE_PX_MAX } from '../../limits';
+import {
+  PICTURE_BYTES_MAX,
+  PICTURE_FILE_MB_MAX,
+  PICTURE_PIXELS_MAX,
+  PICTURE_SIDE_PX_MAX,
+} from '../../limits';
 import { type Tag, child, encoded, insert, read, remove, spliced, value } from './xml';
 
 /** An image as a save keeps it. */
@@ -117,11 +122,10 @@ export async function chosenFrom(file: File): Promise<Chosen | NoPicture> {
   const isSvg = SVG.test(file.name) || file.type === 'image/svg+xml';
   const address = URL.createObjectURL(file);
   try {
-    const image = new Image();
-    image.src = address;
-    await image.decode();
+    const image = await loaded(address);
     // Of SVG that names none it is the browser's.
     const [width, height] = [image.naturalWidth || 300, image.naturalHeight || 300];
+    if (!isSvg && width * height > PICTURE_PIXELS_MAX) return 'tooLarge';
     const stem = file.name.replace(/\.[^.]*$/, '').slice(0, 100) || 'picture';
     if (isSvg) {
       if (file.size > PICTURE_BYTES_MAX) return 'tooLarge';
@@ -138,6 +142,16 @@ export async function chosenFrom(file: File): Promise<Chosen | NoPicture> {
   } finally {
     URL.revokeObjectURL(address);
   }
+}
+
+/** An image of which the size is known, but not each pixel: those may be more than there is memory for. */
+function loaded(address: string): Promise<HTMLImageElement> {
+  return new Promise((done, fail) => {
+    const image = new Image();
+    image.onload = () => done(image);
+    image.onerror = fail;
+    image.src = address;
+  });
 }
 
 /** SVG without what stands before it, which no tag of another document can have in it. */
