@@ -143,7 +143,8 @@ impl Session {
                     return Ok(code);
                 }
             }
-            while let Ok(Some(_)) = self.signals.read_signal() {
+            // One in each turn, which sends what the last one has asked for.
+            if let Ok(Some(_)) = self.signals.read_signal() {
                 if self.stopping.is_some() {
                     self.tell(&format!(
                         "left; {} may still run on {}: trik stop ends it",
