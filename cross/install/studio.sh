@@ -18,8 +18,11 @@ if [ "${1:-}" = --whole ]; then
     is_whole=yes
     shift
 fi
-site=${1:-$root/target/web/site}
-shift $(($# > 0))
+site=$root/target/web/site
+if [ "$#" -gt 0 ]; then
+    site=$1
+    shift
+fi
 no_arguments "$@"
 # shellcheck source=cross/install/package.sh
 . "$root/cross/install/package.sh"
@@ -32,14 +35,22 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 studio=$work/usr/share/trik/studio
 mkdir -p "$studio" "$work/DEBIAN" "$packages"
-cp -r "$site/." "$studio"
+# A name with a line feed, a link out of the folder, or what is no file at all is in no studio that was built.
+if [ -n "$(find "$site/" -name $'*\n*' -print -quit)" ] || [ -n "$(find "$site/" ! -type f ! -type d -print -quit)" ]; then
+    die "$site has a link, or a name with a line feed" "build the studio again: web/site.sh $site"
+fi
+cp -r -- "$site/." "$studio"
 if [ -z "$is_whole" ]; then
     rm -rf "$studio/python"
     # The server sends NAME.gz where it is asked for NAME; only these two it changes, or reads itself.
-    find "$studio" -type f -name '*.gz' | while read -r packed; do
+    find "$studio" -type f -name '*.gz' -print0 | while IFS= read -r -d '' packed; do
         case ${packed#"$studio"/} in
         index.html.gz | sw.js.gz) rm "$packed" ;;
-        *) rm -f "${packed%.gz}" ;;
+        *)
+            if [ -f "${packed%.gz}" ]; then
+                rm "${packed%.gz}"
+            fi
+            ;;
         esac
     done
 fi

@@ -231,8 +231,12 @@ impl Access {
     /// # Errors
     /// It is another one, or counts no longer; as [`Access::pair`].
     pub fn pair_by(&self, ip: IpAddr, typed: &str) -> Result<(), Refused> {
+        // It is for a computer that needs one.
+        if self.is_paired(ip) {
+            return Ok(());
+        }
         let mut code = held(&self.code);
-        if !code.as_mut().is_some_and(|code| code.is(typed)) {
+        if !code.as_mut().is_some_and(|code| code.is(plain(ip), typed)) {
             return Err(Refused::Wrong);
         }
         *code = None;
@@ -253,6 +257,10 @@ impl Access {
     /// As [`Access::pair_last`]; `InvalidInput` if there are too many, or pairing is off.
     pub fn pair(&self, ip: IpAddr) -> io::Result<()> {
         let mut paired = held(self.set()?);
+        if ip.is_unspecified() || ip.is_multicast() {
+            let why = format!("{ip} is the address of no computer");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        }
         if paired.len() >= limits::PAIRED && !paired.contains(&plain(ip)) {
             let why =
                 "too many computers are paired: remove some from the file 'paired' and start again";
@@ -372,6 +380,14 @@ mod tests {
         assert!(matches!(access.pair_by(owner, &old), Err(Refused::Wrong)));
         access.pair_by(owner, &new).unwrap();
         assert!(access.is_paired(owner) && !access.is_paired(other));
+        // One that is paired already uses none up.
+        let next = access.new_code().unwrap();
+        access.pair_by(owner, &next).unwrap();
+        access.pair_by(owner, "wrong").unwrap();
+        access.pair_by("10.0.0.9".parse().unwrap(), &next).unwrap();
+        for none in ["0.0.0.0", "::", "224.0.0.1"] {
+            assert!(access.pair(none.parse().unwrap()).is_err(), "{none}");
+        }
         assert!(matches!(access.pair_by(other, &new), Err(Refused::Wrong)));
     }
 

@@ -84,8 +84,10 @@ pub const PAIRING_MS: u64 = 30_000;
 pub const CODE_MS: u64 = 600_000;
 /// Digits of a pairing code.
 pub const CODE_DIGITS: u32 = 6;
-/// Wrong codes, of all computers together, after which a code counts no longer.
+/// Wrong codes of a computer after which a code counts no longer for it.
 pub const CODES_WRONG_MAX: u32 = 5;
+/// Computers of which wrong codes are heard: with all their codes a guess is right in one of 6000 cases.
+pub const CODE_GUESSERS_MAX: usize = 32;
 /// Paired computers.
 pub const PAIRED: usize = 64;
 /// Bytes of the name of a program.

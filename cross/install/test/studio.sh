@@ -27,6 +27,12 @@ test_studio() {
     check "gives the same bytes" test "$(sha256sum <"$package.deb")" = "$sum"
     check "studio --whole" "$pack" --whole "$site"
     check "a PC has all of it" test "$(dpkg-deb --fsys-tarfile "$package.deb" | tar t | grep -c '[^/]$')" -eq 9
+    touch "$site/"$'two\nlines.gz'
+    check "a name with a line feed is refused" says "a name with a line feed" "$pack" "$site"
+    rm "$site/"$'two\nlines.gz'
+    ln -s /etc/hostname "$site/link"
+    check "a link is refused" says "has a link" "$pack" "$site"
+    check "no name is no folder" says "is no studio" "$pack" ""
     check "studio: unknown argument" gives 2 "$pack" "$site" more
     check "studio: help" says "usage: cross/install/studio.sh" "$pack" --help
     unset TRIK_CROSS_DIR

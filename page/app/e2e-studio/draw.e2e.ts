@@ -395,3 +395,18 @@ test.each(['light', 'dark'] as const)('there are no barriers in %s', async (colo
   await shot(page, colorScheme);
   await page.context().close();
 });
+
+test('a project that was only opened is there after the page is loaded again', async () => {
+  const page = await look.open(site.url);
+  await node(page, 'Initial Node').waitFor();
+  const made = (await library()).blank('kept.qrs');
+  const save = made.ok ? made.value.save() : made;
+  if (!save.ok) throw new Error('no project');
+  const file = { name: 'kept.qrs', mimeType: 'application/zip', buffer: Buffer.from(save.value) };
+  await page.locator('input[type=file][accept^=".qrs"]').setInputFiles(file);
+  await page.getByRole('heading', { name: 'kept.qrs' }).waitFor();
+  await expect.poll(() => page.evaluate(KEPT)).toBe(1);
+  await page.reload();
+  await page.getByRole('heading', { name: 'kept.qrs' }).waitFor();
+  await page.context().close();
+});

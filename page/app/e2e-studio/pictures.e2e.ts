@@ -154,9 +154,13 @@ test('pictures are dropped and pasted', async () => {
   await item(page, 'image 0').waitFor();
   await give('paste');
   await item(page, 'image 1').waitFor();
+  // Another one of the same place is seen beside it; what is no picture is named.
+  await give('drop');
+  await item(page, 'image 2').waitFor();
   const { images, world } = await savedOf(page);
-  expect(images.map(({ text }) => isPng(text))).toEqual([true, true]);
-  expect(world.match(/<image /g)).toHaveLength(2);
+  expect(images.map(({ text }) => isPng(text))).toEqual([true, true, true]);
+  const rects = [...world.matchAll(/<image [^>]*rect="([^"]*)"/g)].map(([, rect]) => rect);
+  expect(new Set(rects).size).toBe(3);
   // A project that is dropped is still opened: nothing else takes it.
   expect(page.url()).toContain(site.url);
   await page.context().close();
@@ -208,6 +212,27 @@ test('a hand draws a line, which moves as a whole', async () => {
   for (let step = 1; step <= 12; step += 1) await page.mouse.move(x + 8 * step, y + 30 * Math.sin(step / 2));
   await page.mouse.up();
   await item(page, 'stylus 0').waitFor({ state: 'attached' });
+  // Escape in the midst of another one leaves nothing of it.
+  await button(page, 'Add: Drawn by hand').click();
+  await page.mouse.move(x, y + 80);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + 120, { steps: 6 });
+  await page.keyboard.press('Escape');
+  await page.mouse.move(x + 90, y + 90, { steps: 3 });
+  await page.mouse.up();
+  await page.getByText('Drawn by hand: drag').waitFor({ state: 'detached' });
+  expect(await item(page, 'stylus 1').count()).toBe(0);
+  // A number that was typed is taken back as everything else.
+  await item(page, 'stylus 0').focus();
+  await page.keyboard.press('Enter');
+  const wide = page.getByLabel('Properties of the thing').getByLabel('Line width, cm');
+  const width = () => item(page, 'stylus 0').locator('path').last().getAttribute('stroke-width');
+  const before = await width();
+  await wide.fill('5');
+  await wide.press('Enter');
+  await expect.poll(width).not.toBe(before);
+  await page.keyboard.press('Control+z');
+  await expect.poll(width).toBe(before);
   const { world } = await savedOf(page);
   expect(world.match(/<stylusLine /g)?.length).toBeGreaterThan(8);
   await item(page, 'stylus 0').focus();

@@ -119,6 +119,16 @@ test('a drawing runs on the robot, is changed there while it runs, held, stepped
   await page.keyboard.press('Space');
   await robots.getByText('No program runs.').waitFor();
   await eventually('the motor rests', () => power() === 0);
+  // Also where it would press the button that has started it.
+  const sends = robots.getByRole('button', { name: 'Send and run' });
+  await sends.click();
+  await eventually('the motor turns once more', () => power() === 55);
+  await sends.focus();
+  await page.keyboard.press('Space');
+  await robots.getByText('No program runs.').waitFor();
+  await eventually('the motor rests again', () => power() === 0);
+  await page.waitForTimeout(500);
+  expect(power()).toBe(0);
   await page.context().close();
 });
 

@@ -99,8 +99,7 @@ test('block and line are chosen together, in every language, also in a subprogra
     await expect
       .poll(() => page.locator('.svelte-flow__node.selected strong').allTextContents())
       .toEqual(['Timer']);
-    await page.getByLabel('Properties').getByLabel('Delay').waitFor();
-    expect(await page.getByLabel('Properties').getByLabel('Delay').inputValue()).toBe('62900');
+    await expect.poll(() => page.getByLabel('Properties').getByLabel('Delay').inputValue()).toBe('62900');
     await line(page, '51700').click();
     await expect.poll(() => page.getByLabel('Properties').getByLabel('Delay').inputValue()).toBe('51700');
   }

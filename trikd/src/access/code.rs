@@ -1,9 +1,12 @@
 //! Pairing codes: digits that a person has who may open the robot's own socket, and types into a browser somewhere else.
 //!
 //! Owns how long a code counts and how many wrong ones are taken. A code is for one computer: it is gone once it was used.
+//! Wrong ones are counted for each computer, so that one that guesses keeps no other one out.
 
 use crate::limits;
+use std::collections::BTreeMap;
 use std::io::{self, Read};
+use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
 /// A code that can be used.
@@ -11,7 +14,8 @@ use std::time::{Duration, Instant};
 pub(super) struct Code {
     digits: String,
     since: Instant,
-    wrong: u32,
+    /// Wrong codes of each computer.
+    wrong: BTreeMap<IpAddr, u32>,
 }
 
 /// Why a computer is not paired by a code.
@@ -44,7 +48,7 @@ impl Code {
         Ok(Self {
             digits: format!("{number:0width$}"),
             since: Instant::now(),
-            wrong: 0,
+            wrong: BTreeMap::new(),
         })
     }
 
@@ -52,18 +56,23 @@ impl Code {
         &self.digits
     }
 
-    /// Whether it counts still.
-    pub(super) fn is_fresh(&self) -> bool {
-        self.wrong < limits::CODES_WRONG_MAX
+    /// Whether it counts still, for a computer.
+    fn is_fresh(&self, ip: IpAddr) -> bool {
+        let own = self.wrong.get(&ip).copied().unwrap_or(0);
+        own < limits::CODES_WRONG_MAX
+            && (own > 0 || self.wrong.len() < limits::CODE_GUESSERS_MAX)
             && self.since.elapsed() < Duration::from_millis(limits::CODE_MS)
     }
 
-    /// Whether a person has typed it, perhaps with spaces; each other text makes it count shorter.
-    pub(super) fn is(&mut self, typed: &str) -> bool {
+    /// Whether a person has typed it there, perhaps with spaces; of each computer so many other texts are heard.
+    pub(super) fn is(&mut self, ip: IpAddr, typed: &str) -> bool {
+        if !self.is_fresh(ip) {
+            return false;
+        }
         let typed = typed.chars().filter(|letter| !letter.is_whitespace());
-        let is_it = self.is_fresh() && typed.eq(self.digits.chars());
+        let is_it = typed.eq(self.digits.chars());
         if !is_it {
-            self.wrong += 1;
+            *self.wrong.entry(ip).or_default() += 1;
         }
         is_it
     }
@@ -80,18 +89,25 @@ mod tests {
         assert!(code.digits().bytes().all(|digit| digit.is_ascii_digit()));
         let (first, last) = code.digits().split_at(3);
         let typed = format!(" {first} {last}\n");
-        assert!(code.is(&typed));
-        for wrong in ["", "1234567", "x", "\u{661}\u{662}\u{663}"] {
-            assert!(!code.is(wrong) && code.is_fresh(), "{wrong}");
+        let at = |last: u8| IpAddr::from([10, 0, 0, last]);
+        assert!(code.is(at(1), &typed));
+        for wrong in ["", "1234567", "x", "\u{661}\u{662}\u{663}", "also wrong"] {
+            assert!(code.is_fresh(at(1)) && !code.is(at(1), wrong), "{wrong}");
         }
-        assert!(!code.is("also wrong"));
-        assert!(!code.is_fresh() && !code.is(&typed));
+        assert!(!code.is(at(1), &typed));
+        // Others are not kept out by that, unless there are very many who guess.
+        assert!(code.is(at(2), &typed));
+        for guesser in 3..100 {
+            assert!(!code.is(at(guesser), "guess"));
+        }
+        assert!(code.wrong.len() == limits::CODE_GUESSERS_MAX && !code.is(at(2), &typed));
+        assert!(code.is(at(3), &typed));
         let old = Duration::from_millis(limits::CODE_MS);
         let mut code = Code::new().unwrap();
         if let Some(since) = code.since.checked_sub(old) {
             code.since = since;
             let typed = code.digits().to_owned();
-            assert!(!code.is(&typed));
+            assert!(!code.is(at(1), &typed));
         }
     }
 

@@ -6,7 +6,7 @@ use crate::program::Node;
 
 const MARK: char = '\u{1}';
 
-/// Puts a mark at the end of a line; no blocks need none.
+/// Puts a mark at the end of a line; one that says no block gets none.
 pub(super) fn mark(line: &mut String, nodes: &[Node]) {
     for (at, node) in nodes.iter().enumerate() {
         line.push(if at == 0 { MARK } else { ',' });

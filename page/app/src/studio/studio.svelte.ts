@@ -197,7 +197,7 @@ export class Studio {
       if (!answer.ok) throw new Error(`${answer.status}`);
       const bytes = new Uint8Array(await answer.arrayBuffer());
       const name = named.dataset['name'] ?? named.content;
-      await this.open(name, bytes);
+      await this.open(name, bytes, false);
       await this.#drafts.call('setTask');
       this.#task = { name, bytes };
       this.hasTask = true;
@@ -217,7 +217,7 @@ export class Studio {
     if (!this.isReady) this.refusal = why;
   }
 
-  async open(name: string, bytes: Uint8Array): Promise<void> {
+  async open(name: string, bytes: Uint8Array, isKept = true): Promise<void> {
     if (bytes.length > EDIT_FILE_MB_MAX << 20) {
       this.refusal = words.notOpened(name, words.tooLarge(EDIT_FILE_MB_MAX));
       return;
@@ -228,6 +228,7 @@ export class Studio {
       return;
     }
     this.#show(opened);
+    if (isKept) this.#keepSoon();
     if (name.toLowerCase().endsWith('.flow')) this.notice = ofFlow.textOpened(name);
   }
 

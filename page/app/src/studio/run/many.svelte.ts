@@ -73,15 +73,21 @@ export class Many {
     const { name } = file;
     const others = this.fields.filter((one) => one.name !== name);
     const most = name.endsWith('.qrs') ? EDIT_FILE_MB_MAX : WORLD_FILE_MB_MAX;
-    if (others.length >= FIELDS_MAX) this.refusal = words.mostFields(FIELDS_MAX);
-    else if (file.size > most << 20) this.refusal = words.notField(name, all.tooLarge(most));
+    if (others.length >= FIELDS_MAX) this.#refuse(words.mostFields(FIELDS_MAX));
+    else if (file.size > most << 20) this.#refuse(words.notField(name, all.tooLarge(most)));
     else {
       const bytes = new Uint8Array(await file.arrayBuffer());
       const field = await worker.call('field', name, bytes, language);
-      if (field === undefined) this.refusal = words.notField(name, words.noWorld);
-      else if (typeof field === 'string') this.refusal = words.notField(name, field);
+      if (field === undefined) this.#refuse(words.notField(name, words.noWorld));
+      else if (typeof field === 'string') this.#refuse(words.notField(name, field));
       else this.fields = [...others, { name, text: field.text }];
     }
+  }
+
+  /** One more reason, once. */
+  #refuse(why: string): void {
+    const all = this.refusal.split('\n').filter(Boolean);
+    if (!all.includes(why)) this.refusal = [...all, why].join('\n');
   }
 
   without(name: string): void {

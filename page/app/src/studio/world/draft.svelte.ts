@@ -4,7 +4,7 @@
 
 import type { Finding } from '../engine/facts';
 import type { Studio } from '../studio.svelte';
-import { KINDS, type KindName, isPicture, pictureBox } from './kinds';
+import { KINDS, type KindName, isPicture, pictureRect } from './kinds';
 import {
   type Item,
   NEW_WORLD,
@@ -12,7 +12,6 @@ import {
   type WorldModel,
   added,
   changed,
-  drawnTo,
   isFault,
   model,
   without,
@@ -134,11 +133,12 @@ export class WorldDraft {
   async changePicture(item: Item, chosen: Chosen): Promise<void> {
     const kept = await this.#withImage(chosen);
     if (!this.model || !kept) return;
-    const [x, y, width] = pictureBox(item.values);
+    const { values } = item;
+    const name = pictureRect(values);
+    const [left = 0, top = 0, width = 0] = values.lengths(name, 4);
     const high = (Math.abs(width) * chosen.height) / chosen.width;
-    const grip = item.kind.grips[0];
-    const place = grip ? drawnTo(item, grip, [x + width, y + high]) : {};
-    const splices = changed(this.model, item.key, { imageId: kept.id, ...place });
+    const place = values.writePoint(left, top, width, high);
+    const splices = changed(this.model, item.key, { imageId: kept.id, [name]: place });
     await this.put(spliced(this.model.document.text, splices), this.#without(kept.images, item));
   }
 

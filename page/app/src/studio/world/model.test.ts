@@ -117,7 +117,7 @@ test('a picture is where its rectangle is moved to, and keeps that', () => {
   if (!first || !old || !corner) throw new Error('no pictures');
   expect(gripAt(first, corner, 0)).toEqual([110, 70]);
   expect(shifted(first, 5, 5)).toEqual({ rect: '5:5:100:50' });
-  expect(drawnTo(first, corner, [60, 60])).toEqual({ rect: '0:0:50:40' });
+  expect(drawnTo(first, corner, [60, 60])).toEqual({ rect: '0:0:50:25' });
   expect(shifted(old, 5, 5)).toEqual({ backgroundRect: '10:10:10:10' });
 });
 

@@ -357,7 +357,11 @@ export function drawnTo(item: Item, grip: Grip, [x, y]: Spot): Record<string, st
   const name = pictureRect(values);
   const [left = 0, top = 0] = values.lengths(name, 4);
   const [seenX, seenY] = pictureBox(values);
-  return { [name]: values.writePoint(left, top, Math.max(x - seenX, 1), Math.max(y - seenY, 1)) };
+  const [, , wide, high] = pictureBox(values);
+  // A hand keeps the proportions; the fields take any size.
+  const across = Math.max(x - seenX, 1);
+  const down = wide > 0 && high > 0 ? (across * high) / wide : Math.max(y - seenY, 1);
+  return { [name]: values.writePoint(left, top, across, down) };
 }
 
 /** Where a thing is taken to be when it snaps to the grid. */
