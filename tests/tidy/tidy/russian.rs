@@ -6,9 +6,10 @@ use super::{files, none, root};
 use harness::documents::{Example, examples};
 
 /// Pages that `docs/ru` has under the same name.
-const TRANSLATED: [&str; 9] = [
+const TRANSLATED: [&str; 10] = [
     "docs/teacher/checking.md",
     "docs/teacher/rules.md",
+    "docs/teacher/site.md",
     "docs/user/class.md",
     "docs/user/page.md",
     "docs/user/programs.md",
