@@ -7,6 +7,7 @@
 //! or metres, which `settings` says.
 
 mod attributes;
+mod blob;
 mod hold;
 mod items;
 mod read;
@@ -15,9 +16,10 @@ mod visit;
 mod words;
 mod write;
 
+pub use blob::Blob;
 pub use items::{
-    Blob, Comment, Drawn, Image, Locks, Material, Pen, ROBOT_SIZE, Region, Robot, Sensor,
-    SensorKind, Settings, Shape, Solid, SolidKind, Start, Stroke, Trace, Unit, Wall,
+    Comment, Drawn, Image, Locks, Material, Pen, ROBOT_SIZE, Region, Robot, Sensor, SensorKind,
+    Settings, Shape, Solid, SolidKind, Start, Stroke, Trace, Unit, Wall,
 };
 pub use read::Opened;
 pub use table::{KINDS, Kind};

@@ -351,17 +351,6 @@ pub struct Image {
     pub(crate) source: Element<'static>,
 }
 
-/// Contents of a picture.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Blob {
-    /// The path that it once had: its ending says what it is.
-    pub path: String,
-    /// Not in the project but in the file of `path`.
-    pub is_external: bool,
-    /// Base64 of a picture's file, or the text of an SVG.
-    pub text: String,
-}
-
 /// Kinds of regions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {

@@ -9,9 +9,10 @@ use lang_text::problem::{Problem, Severity, keep};
 use lang_text::xml::{self, Element, Node};
 
 use super::attributes::{Codec, Mode};
+use super::blob::Blob;
 use super::items::{
-    Blob, Comment, Drawn, Image, Pen, Region, Robot, Sensor, Settings, Shape, Solid, SolidKind,
-    Stroke, Trace, Unit, Wall,
+    Comment, Drawn, Image, Pen, Region, Robot, Sensor, Settings, Shape, Solid, SolidKind, Stroke,
+    Trace, Unit, Wall,
 };
 use super::{Field, words};
 use crate::geometry::Point;
@@ -520,8 +521,13 @@ pub(super) fn add_blobs(field: &mut Field, text: &str) -> Vec<Problem> {
         }
     }
     for image in &field.images {
-        if !field.blobs.contains_key(&image.image) {
-            let mut problem = Problem::warning(words::no_blob(&image.image));
+        let words = match field.blobs.get(&image.image) {
+            None => Some(words::no_blob(&image.image)),
+            Some(blob) if blob.is_external || blob.begins_as_picture() => None,
+            Some(_) => Some(words::no_contents(&image.image)),
+        };
+        if let Some(words) = words {
+            let mut problem = Problem::warning(words);
             problem.place.object = Some(image.id.clone());
             problem.place.offset = Some(image.source.start.0);
             keep(&mut problems, problem);

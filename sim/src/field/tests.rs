@@ -190,23 +190,30 @@ fn pictures_are_found_by_their_ids_and_missed_by_name() {
     );
     assert!(field.images[0].is_background);
     let problems = field.add_blobs(
-        "<blobs><images><image imageId=\"p\" path=\"a.png\">AAAA</image></images></blobs>",
+        "<blobs><images><image imageId=\"p\" path=\"a.png\">iVBORw0KGgo=</image></images></blobs>",
     );
-    assert_eq!(field.blobs["p"].text, "AAAA");
+    assert_eq!(field.blobs["p"].text, "iVBORw0KGgo=");
     assert_eq!(problems.len(), 1);
     assert!(problems[0].to_string().contains("'q'"), "{}", problems[0]);
+    let problems = field.add_blobs(
+        "<blobs><images><image imageId=\"q\" path=\"a.png\">bm9uZQ==</image></images></blobs>",
+    );
+    assert!(
+        problems[0].to_string().contains("is no picture"),
+        "{problems:?}"
+    );
 }
 
 #[test]
 fn a_world_may_have_its_images_with_it() {
-    let images = "<blobs><images><image imageId=\"p\" path=\"a.png\">AAAA</image></images></blobs>";
+    let images = "<blobs><images><image imageId=\"p\" path=\"a.png\">/9j/</image></images></blobs>";
     let world = "<world><images><image id=\"i\" imageId=\"p\" rect=\"0:0:1:1\"/></images></world>";
     for text in [
         format!("<root><settings/>{world}{images}</root>"),
         format!("<model><root><settings/>{world}</root>{images}</model>"),
     ] {
         let mut field = read(&text).field;
-        assert_eq!(field.blobs["p"].text, "AAAA");
+        assert_eq!(field.blobs["p"].text, "/9j/");
         assert_eq!(field.add_blobs(""), []);
         assert!(field.write().contains("<settings/>"));
     }

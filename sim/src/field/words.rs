@@ -125,6 +125,17 @@ pub(super) fn bad_port(text: &str) -> Words {
     )
 }
 
+pub(super) fn no_contents(id: &str) -> Words {
+    Words::new(
+        format!(
+            "what the picture '{id}' has is no picture: it is not shown, and sensors see nothing of it. Choose another one"
+        ),
+        format!(
+            "в картинке '{id}' не картинка: она не видна ни людям, ни датчикам. Выберите другую"
+        ),
+    )
+}
+
 pub(super) fn no_blob(id: &str) -> Words {
     Words::new(
         format!("the picture '{id}' is not in the project, so nothing is seen in its place"),
