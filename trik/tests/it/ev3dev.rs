@@ -287,6 +287,8 @@ fn a_timed_run_ends_by_itself_and_ramps_are_told() {
     view.until_done(LEFT);
     assert!(robot.turned_deg(3) > 50.0);
     assert_eq!(robot.duty(3).unwrap(), 0);
+    // A ramp begins at the speed of the shaft: one that still runs out would have none.
+    view.until_still(LEFT);
     view.run(
         LEFT,
         &[("ramp_up_sp", 8000), ("ramp_down_sp", 8000)],
