@@ -70,7 +70,7 @@ for stage in "${stages[@]}"; do
         boot cost 900 "${clock_of_controller[@]}"
         say "at 300 million instructions in a second"
         table
-        judge 6
+        judge 10
         ;;
     esac
 done

@@ -19,16 +19,14 @@ mod words;
 use crate::admission::Admission;
 use crate::door::Peer;
 use crate::error::Error;
-use crate::gate::{Gate, enter, text};
 use crate::guests::Guests;
-use crate::route::{given, locale};
+use crate::limits;
+use crate::room;
+use crate::route::locale;
 use crate::serving::Serving;
-use crate::{files, limits};
 use axum::Router;
 use axum::extract::{ConnectInfo, Query, State, WebSocketUpgrade};
-use axum::http::{StatusCode, Uri};
-use axum::middleware::from_fn_with_state;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use axum::routing::get;
 use board::Board;
 use shared::Class;
@@ -42,16 +40,10 @@ pub use robot::{BATTERY, COMMANDER, DEBUGGER, EXPLAINED, STARTED};
 pub use upload::REFUSALS;
 
 /// The path of the page, by which it knows that it is this one.
-const PATH: &str = "/class";
-/// Paths that give the cookie.
-const PAGES: &[&str] = &[PATH];
-/// First parts of paths that need it.
-const DATA: &[&str] = &["socket"];
+pub(crate) const PATH: &str = "/class";
 
 /// What the page of a class is for.
 pub struct ClassSettings {
-    /// Where it is served; with port 0 at any free one.
-    pub address: SocketAddr,
     /// The class, as a title.
     pub name: String,
     /// At most [`limits::CLASS_ROBOTS_MAX`]; others are left out.
@@ -65,39 +57,16 @@ pub struct ClassSettings {
 pub struct ClassPage(Serving);
 
 impl ClassPage {
-    /// Serves it from now on, and looks for the robots.
+    /// Serves it from now on, with port 0 at any free one, and looks for the robots.
     ///
     /// # Errors
     /// Nobody can listen there, or there are no more threads.
-    pub fn start(settings: ClassSettings) -> Result<Self, Error> {
-        let ClassSettings {
-            address,
-            name,
-            mut robots,
-            guests,
-        } = settings;
-        robots.truncate(limits::CLASS_ROBOTS_MAX);
-        let threads = limits::CLASS_ROBOTS_MAX;
-        let serving = Serving::start(address, guests.clone(), threads, |port| {
-            let gate = Arc::new(Gate::new(guests.clone(), port, PAGES, DATA)?);
-            let board = Arc::new(Board::new(&robots));
-            for (id, member) in robots.iter().enumerate() {
-                tokio::spawn(robot::run(board.clone(), id, member.whereabouts.clone()));
-            }
-            let class = Arc::new(Class {
-                name,
-                board,
-                guests,
-                admission: Admission::default(),
-                uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
-            });
-            Ok(Router::new()
-                .route("/socket", get(socket))
-                .fallback(file)
-                .layer(from_fn_with_state(gate, enter))
-                .with_state(class))
-        })?;
-        Ok(Self(serving))
+    pub fn start(address: SocketAddr, settings: ClassSettings) -> Result<Self, Error> {
+        let guests = settings.guests.clone();
+        room::serve(address, guests, limits::CLASS_ROBOTS_MAX, &[PATH], || {
+            routes(settings, false)
+        })
+        .map(Self)
     }
 
     /// Where it is served; the page itself is at [`ClassPage::path`] there.
@@ -111,21 +80,30 @@ impl ClassPage {
     }
 }
 
-async fn file(uri: Uri) -> Response {
-    let path = match uri.path() {
-        PATH => "/",
-        "/" => {
-            return (StatusCode::TEMPORARY_REDIRECT, [("location", PATH)]).into_response();
-        }
-        other => other,
+/// What is the class' own of what is served, of which marks may be another part. Looks for the robots from now on; has to be called
+/// within a runtime.
+pub(crate) fn routes(settings: ClassSettings, has_marks: bool) -> Router {
+    let ClassSettings {
+        name,
+        mut robots,
+        guests,
+    } = settings;
+    robots.truncate(limits::CLASS_ROBOTS_MAX);
+    let board = Arc::new(Board::new(&robots));
+    for (id, member) in robots.iter().enumerate() {
+        tokio::spawn(robot::run(board.clone(), id, member.whereabouts.clone()));
+    }
+    let class = Class {
+        name,
+        has_marks,
+        board,
+        guests,
+        admission: Admission::default(),
+        uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
     };
-    files::find_of_class(path).map_or_else(|| match path {
-        "/" => text(
-            StatusCode::NOT_FOUND,
-            "this program was built without the page for browsers: install nodejs and npm, and build again",
-        ),
-        _ => text(StatusCode::NOT_FOUND, "there is no such file"),
-    }, given)
+    Router::new()
+        .route("/socket/class", get(socket))
+        .with_state(Arc::new(class))
 }
 
 async fn socket(

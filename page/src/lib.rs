@@ -5,7 +5,7 @@
 //! hardly looked at: the page speaks it as every other client does.
 //!
 //! - `server`, `serving`, `door`, `route`: the page, its thread, connections, and which address gives what
-//! - `class`, `marks`: the pages of many robots and of marks that come, each with a server of its own
+//! - `class`, `marks`: the pages of many robots and of marks that come; `room`: how they are served, alone or together
 //! - `seats`, `admission`: which connections have a place and which lose it; the places of browsers
 //! - `guard`, `gate`: Host, Origin and the cookie, and what all requests pass
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
@@ -44,6 +44,7 @@ pub mod marks;
 mod plain;
 pub mod playback;
 mod relay;
+mod room;
 mod route;
 pub mod seats;
 mod server;

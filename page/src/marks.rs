@@ -14,18 +14,19 @@ mod viewer;
 mod word;
 
 use crate::admission::Admission;
+use crate::class::{self, ClassSettings};
 use crate::door::Peer;
 use crate::error::Error;
-use crate::gate::{Gate, enter, text};
+use crate::gate::text;
 use crate::guests::{Everybody, Guests};
-use crate::route::{given, locale};
+use crate::limits;
+use crate::room;
+use crate::route::locale;
 use crate::serving::Serving;
-use crate::{files, limits};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, State, WebSocketUpgrade};
-use axum::http::{StatusCode, Uri};
-use axum::middleware::from_fn_with_state;
-use axum::response::{IntoResponse, Response};
+use axum::http::StatusCode;
+use axum::response::Response;
 use axum::routing::get;
 use board::Board;
 use std::collections::HashMap;
@@ -36,11 +37,7 @@ use tokio::sync::Semaphore;
 pub use sheet::{Cell, Column, Mark, MarkTable, Row, Tone};
 
 /// The path of the page, by which it knows that it is this one.
-const PATH: &str = "/marks";
-/// Paths that give the cookie.
-const PAGES: &[&str] = &[PATH];
-/// First parts of paths that need it.
-const DATA: &[&str] = &["socket", "replay"];
+pub(crate) const PATH: &str = "/marks";
 
 /// What all viewers share.
 struct Shared {
@@ -55,34 +52,52 @@ struct Shared {
 pub struct MarksPage {
     serving: Serving,
     board: Arc<Board>,
+    path: &'static str,
 }
 
 impl MarksPage {
-    /// Serves it from now on, with nothing judged. Anyone who reaches the address may look, and nobody can do more.
+    /// Serves it from now on, with nothing judged. With a class the robots are on the same page, and its guests say who may look and
+    /// command; without one anyone who reaches the address may look, and nobody can do more.
     ///
     /// # Errors
     /// Nobody can listen there, or there are no more threads.
-    pub fn start(address: SocketAddr, sheet: MarkTable) -> Result<Self, Error> {
+    pub fn start(
+        address: SocketAddr,
+        sheet: MarkTable,
+        class: Option<ClassSettings>,
+    ) -> Result<Self, Error> {
         let board = Arc::new(Board::new(sheet));
         let shown = board.clone();
-        let guests: Arc<dyn Guests> = Arc::new(Everybody);
-        let threads = limits::REPLAYS_AT_ONCE;
-        let serving = Serving::start(address, guests.clone(), threads, |port| {
-            let gate = Arc::new(Gate::new(guests.clone(), port, PAGES, DATA)?);
-            let shared = Arc::new(Shared {
-                board: shown,
-                guests,
-                admission: Admission::default(),
-                replays: Semaphore::new(limits::REPLAYS_AT_ONCE),
-            });
-            Ok(Router::new()
-                .route("/socket", get(socket))
+        let guests: Arc<dyn Guests> = match &class {
+            Some(class) => class.guests.clone(),
+            None => Arc::new(Everybody),
+        };
+        let (path, pages, robots): (_, &[_], _) = match &class {
+            Some(_) => (class::PATH, &[class::PATH, PATH], limits::CLASS_ROBOTS_MAX),
+            None => (PATH, &[PATH], 0),
+        };
+        let shared = Shared {
+            board: shown,
+            guests: guests.clone(),
+            admission: Admission::default(),
+            replays: Semaphore::new(limits::REPLAYS_AT_ONCE),
+        };
+        let threads = limits::REPLAYS_AT_ONCE + robots;
+        let serving = room::serve(address, guests, threads, pages, || {
+            let marks = Router::new()
+                .route("/socket/marks", get(socket))
                 .route("/replay/{number}", get(replayed))
-                .fallback(file)
-                .layer(from_fn_with_state(gate, enter))
-                .with_state(shared))
+                .with_state(Arc::new(shared));
+            match class {
+                Some(class) => marks.merge(class::routes(class, true)),
+                None => marks,
+            }
         })?;
-        Ok(Self { serving, board })
+        Ok(Self {
+            serving,
+            board,
+            path,
+        })
     }
 
     /// Where it is served; the page itself is at [`MarksPage::path`] there.
@@ -91,8 +106,8 @@ impl MarksPage {
     }
 
     /// The path of the page.
-    pub fn path() -> &'static str {
-        PATH
+    pub fn path(&self) -> &'static str {
+        self.path
     }
 
     /// A row is so now; viewers are told if that has made a difference. One that is not in the table is left out.
@@ -109,23 +124,6 @@ impl MarksPage {
     pub fn over(&self) {
         self.board.progress(|progress| progress.is_over = true);
     }
-}
-
-async fn file(uri: Uri) -> Response {
-    let path = match uri.path() {
-        PATH => "/",
-        "/" => {
-            return (StatusCode::TEMPORARY_REDIRECT, [("location", PATH)]).into_response();
-        }
-        other => other,
-    };
-    files::find_of_class(path).map_or_else(|| match path {
-        "/" => text(
-            StatusCode::NOT_FOUND,
-            "this program was built without the page for browsers: install nodejs and npm, and build again",
-        ),
-        _ => text(StatusCode::NOT_FOUND, "there is no such file"),
-    }, given)
 }
 
 async fn socket(

@@ -4,7 +4,7 @@
 //! to `remote::roster`.
 
 mod find;
-mod page;
+pub(crate) mod page;
 
 use crate::output::standard;
 use crate::refusal::Refusal;

@@ -1,31 +1,14 @@
 // A person draws a program with mouse, finger and keys, and has it judged.
 
 import { existsSync, readFileSync } from 'node:fs';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { DATA, Site, drafted, library } from './site';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
+import { DATA, drafted, library } from './site';
 
-let look: Look;
-let site: Site;
-let home: string;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
+const here = begin();
 
 const node = (page: Page, name: string | RegExp) =>
   page.locator('.svelte-flow__node').filter({ has: page.locator('strong', { hasText: name }) });
@@ -34,7 +17,7 @@ const node = (page: Page, name: string | RegExp) =>
 async function drag(page: Page, title: string, x: number, y: number): Promise<void> {
   const sheet = page.locator('.svelte-flow');
   const count = await page.locator('.svelte-flow__node').count();
-  const source = page.getByRole('button', { name: `Add ${title}`, exact: true });
+  const source = button(page, `Add ${title}`);
   await source.dragTo(sheet, { targetPosition: { x, y } });
   await eventually(
     `${title} is there`,
@@ -47,10 +30,10 @@ async function link(page: Page, from: number, to: number): Promise<void> {
   const nodes = page.locator('.svelte-flow__node');
   const count = await page.locator('.svelte-flow__edge').count();
   await nodes.nth(from).hover();
-  const begin = await nodes.nth(from).locator('[data-handlepos=right]').boundingBox();
+  const source = await nodes.nth(from).locator('[data-handlepos=right]').boundingBox();
   const end = await nodes.nth(to).boundingBox();
-  if (!begin || !end) throw new Error('no block is seen');
-  await page.mouse.move(begin.x + begin.width / 2, begin.y + begin.height / 2);
+  if (!source || !end) throw new Error('no block is seen');
+  await page.mouse.move(source.x + source.width / 2, source.y + source.height / 2);
   await page.mouse.down();
   await page.mouse.move(end.x + end.width / 2, end.y + end.height / 2, { steps: 8 });
   await page.mouse.up();
@@ -76,8 +59,8 @@ async function set(page: Page, block: number, values: Record<string, string>): P
 
 async function saved(page: Page, name: string): Promise<Uint8Array> {
   const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Save', exact: true }).click();
-  const file = join(home, name);
+  await button(page, 'Save').click();
+  const file = join(here.home, name);
   await (await download).saveAs(file);
   return new Uint8Array(readFileSync(file));
 }
@@ -96,7 +79,7 @@ async function shot(page: Page, name: string): Promise<void> {
 }
 
 test('a program drawn with the mouse is judged as its original', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   // Encoders, turns and waits of the second example of TRIK Studio, in three rows.
   const rows: [string, Record<string, string>][][] = [
@@ -133,7 +116,7 @@ test('a program drawn with the mouse is judged as its original', async () => {
   await shot(page, 'drawn');
   await page.getByRole('button', { name: 'Arrange' }).click();
   await page.getByLabel('Speed').selectOption('fastest');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.getByText('The program has ended.').waitFor();
   const shown = await page.getByText(/Time: [\d.]+ s/).textContent();
   // What was drawn is a file that the judge takes, and takes as long as the original with its world does.
@@ -157,7 +140,7 @@ test('a program drawn with the mouse is judged as its original', async () => {
 
 test('a run is seen: the block that works, the way, the verdict of the rules', async () => {
   const root = join(import.meta.dirname, '../../..');
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   await page.getByLabel('Open').setInputFiles(join(root, 'examples/diagrams/line.qrs'));
   await page.getByRole('heading', { name: 'line.qrs' }).waitFor();
@@ -165,7 +148,7 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await page.getByText('The world is that of line.xml.').waitFor();
   await page.getByRole('button', { name: 'Dismiss' }).click();
   await page.getByLabel('Speed').selectOption('10');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await expect.poll(() => page.locator('.lit').count()).toBeGreaterThan(0);
   await expect
     .poll(async () => parseFloat((await page.locator('.bar .number').textContent()) ?? ''))
@@ -186,14 +169,14 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   await page.getByText('The run goes on with the program as it was').waitFor({ state: 'detached' });
   // A breakpoint holds the program and its world before a block, and steps go from block to block.
   await node(page, 'Timer').click();
-  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
+  await button(page, 'Breakpoint').click();
   await page.getByRole('button', { name: 'Go on' }).waitFor();
   expect(await page.locator('.lit strong').textContent()).toBe('Timer');
   await shot(page, 'run');
   const held = await page.locator('.bar .number').textContent();
   await page.getByRole('button', { name: 'Step over' }).click();
   await expect.poll(() => page.locator('.lit strong').textContent()).toBe('Function');
-  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
+  await button(page, 'Breakpoint').click();
   await page.getByLabel('Speed').selectOption('fastest');
   await page.getByRole('button', { name: 'Go on' }).click();
   await page.getByText('The task is done.').waitFor();
@@ -203,15 +186,15 @@ test('a run is seen: the block that works, the way, the verdict of the rules', a
   // From the beginning it is the run of `trik check`.
   await page.keyboard.press('Escape');
   for (let change = 0; change < 3; change++) await page.keyboard.press('Control+z');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.getByText('Time: 34.83 s').waitFor();
   await page.context().close();
 });
 
 test('what is drawn is taken back, made again, copied, and found as it was left', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await node(page, /^Timer/).waitFor();
   await page.locator('.svelte-flow__node').nth(2).click();
   await page.keyboard.press('Control+c');
@@ -231,22 +214,22 @@ test('what is drawn is taken back, made again, copied, and found as it was left'
   await page.getByText('not saved').waitFor();
   await expect.poll(() => page.evaluate(KEPT)).toBe(1);
   await page.goto('about:blank');
-  await page.goto(site.url);
+  await page.goto(here.site.url);
   await node(page, /^Timer/).waitFor();
   const beside = await page.context().newPage();
-  await beside.goto(site.url);
+  await beside.goto(here.site.url);
   await node(beside, 'Initial Node').waitFor();
   expect(await node(beside, /^Timer/).count()).toBe(0);
   await page.close();
   const again = await beside.context().newPage();
-  await again.goto(site.url);
+  await again.goto(here.site.url);
   await node(again, /^Timer/).waitFor();
   await again.getByText('as it was when this page was left').waitFor();
   await again.context().close();
 });
 
 test('by keys alone a block is added, written into, linked and removed', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   await page.getByRole('searchbox').focus();
   await page.keyboard.type('motors for');
@@ -264,7 +247,7 @@ test('by keys alone a block is added, written into, linked and removed', async (
   await page.keyboard.press('Enter');
   await expect.poll(() => node(page, 'Motors Forward').textContent()).toContain('sensorA1');
   await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
-  await page.getByRole('button', { name: 'Connect', exact: true }).press('Enter');
+  await button(page, 'Connect').press('Enter');
   await expect.poll(() => page.locator('.svelte-flow__edge').count()).toBe(1);
   await page.getByRole('group', { name: /^Motors Forward/ }).focus();
   await page.keyboard.press('Enter');
@@ -279,14 +262,14 @@ test('by keys alone a block is added, written into, linked and removed', async (
 });
 
 test('mistakes are shown while they are made, and lead to their block', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
-  await page.getByRole('button', { name: 'Add Function', exact: true }).click();
+  await button(page, 'Add Function').click();
   await page.getByLabel('Connect to').selectOption({ label: 'Final Node' });
-  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await button(page, 'Connect').click();
   await node(page, 'Initial Node').click();
   await page.getByLabel('Connect to').selectOption({ label: 'Function' });
-  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  await button(page, 'Connect').click();
   await page.getByText('Nothing is wrong.').waitFor({ state: 'attached' });
   await node(page, 'Function').click();
   const body = page.getByLabel('Properties').getByRole('textbox').first();
@@ -303,12 +286,12 @@ test('mistakes are shown while they are made, and lead to their block', async ()
 });
 
 test('a file that is chosen before the studio has come is open once it has', async () => {
-  const page = await look.open('about:blank');
+  const page = await here.look.open('about:blank');
   await page.route(/[.]wasm$/, async (route) => {
     await new Promise((later) => setTimeout(later, 1500));
     await route.continue();
   });
-  await page.goto(site.url);
+  await page.goto(here.site.url);
   await page
     .getByLabel('Open')
     .setInputFiles(join(import.meta.dirname, '../../../examples/diagrams/line.qrs'));
@@ -318,13 +301,13 @@ test('a file that is chosen before the studio has come is open once it has', asy
 });
 
 test('what is being typed is in the file that Ctrl+S saves', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await page.getByLabel('Delay (ms)').fill('777');
   const download = page.waitForEvent('download');
   await page.keyboard.press('Control+s');
-  const file = join(home, 'typed.qrs');
+  const file = join(here.home, 'typed.qrs');
   await (await download).saveAs(file);
   const draft = await drafted(new Uint8Array(readFileSync(file)));
   const blocks = draft.sheet(draft.about().diagrams[0]?.id ?? '')?.blocks ?? [];
@@ -333,7 +316,7 @@ test('what is being typed is in the file that Ctrl+S saves', async () => {
 });
 
 test('a block goes into a link, a link gets another end, and a call another subprogram', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   await link(page, 0, 1);
   const [start, end] = [
@@ -348,13 +331,13 @@ test('a block goes into a link, a link gets another end, and a call another subp
     .waitFor({ state: 'attached' });
   await page.getByRole('group', { name: 'Link from Initial Node to Stop Motors' }).focus();
   await page.keyboard.press('Enter');
-  await page.getByRole('button', { name: 'Add Function', exact: true }).click();
+  await button(page, 'Add Function').click();
   await page.getByRole('group', { name: 'Link from Function to Stop Motors' }).waitFor({ state: 'attached' });
   for (let change = 0; change < 2; change++) await page.keyboard.press('Control+z');
   await page
     .getByRole('group', { name: 'Link from Initial Node to Final Node' })
     .waitFor({ state: 'attached' });
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await node(page, 'Timer').waitFor();
   await page.getByRole('group', { name: 'Link from Initial Node to Final Node' }).focus();
   await page.keyboard.press('Enter');
@@ -376,18 +359,18 @@ test('a block goes into a link, a link gets another end, and a call another subp
   await page.keyboard.press('Enter');
   await page.getByRole('alert').getByText('another subprogram is called').waitFor();
   await main.click();
-  await page.getByRole('button', { name: 'Add Subprogram 1', exact: true }).click();
+  await button(page, 'Add Subprogram 1').click();
   await page.getByLabel('Calls').selectOption('Subprogram 2');
   await node(page, 'Subprogram 2').waitFor();
   await page.context().close();
 });
 
 test.each(['light', 'dark'] as const)('there are no barriers in %s', async (colorScheme) => {
-  const page = await look.open(site.url, { colorScheme });
+  const page = await here.look.open(here.site.url, { colorScheme });
   await node(page, 'Initial Node').waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await page.getByRole('button', { name: '+ New subprogram' }).click();
-  await page.getByRole('button', { name: 'Subprogram 1', exact: true }).waitFor();
+  await button(page, 'Subprogram 1').waitFor();
   expect(await barriers(page)).toEqual([]);
   await page.getByRole('button', { name: "Robot's Behaviour Diagram" }).click();
   await node(page, 'Timer').click();
@@ -397,7 +380,7 @@ test.each(['light', 'dark'] as const)('there are no barriers in %s', async (colo
 });
 
 test('a project that was only opened is there after the page is loaded again', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   const made = (await library()).blank('kept.qrs');
   const save = made.ok ? made.value.save() : made;

@@ -1,25 +1,13 @@
 // A person mends mistakes by a click: each mend makes its mistake go, and goes by Ctrl+Z.
 
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
+import { expect, test } from 'vitest';
 import type { Draft } from '../src/studio/engine/package';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site, library } from './site';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin } from './begin';
+import { library } from './site';
 
-let look: Look;
-let site: Site;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-});
+const here = begin();
 
 type Drawing = [kind: string, properties?: Record<string, string>][];
 
@@ -33,14 +21,14 @@ async function project(
   if (!made.ok) throw new Error('no project');
   const draft = made.value;
   const diagram = draft.about().diagrams[0]?.id ?? '';
-  const [begin = '', end = ''] = draft.sheet(diagram)?.blocks.map(({ id }) => id) ?? [];
+  const [first = '', end = ''] = draft.sheet(diagram)?.blocks.map(({ id }) => id) ?? [];
   const added = draft.apply({
     do: 'add',
     diagram,
     blocks: blocks.map(([kind, properties = {}], at) => ({ kind, at: [300 + at * 120, 300], properties })),
     links: [],
   });
-  const ids = [begin, ...(added.ok ? added.value : []), end];
+  const ids = [first, ...(added.ok ? added.value : []), end];
   for (const [from, to, guard = ''] of links)
     draft.apply({ do: 'connect', from: ids[from] ?? '', to: ids[to] ?? '', guard });
   more?.(draft, ids);
@@ -51,7 +39,7 @@ async function project(
 }
 
 async function opened(buffer: Buffer): Promise<Page> {
-  const page = await look.open(site.url);
+  const page = await here.open();
   page.setDefaultTimeout(20_000);
   await page.getByLabel('Open').setInputFiles({ name: 'mend.qrs', mimeType: 'application/zip', buffer });
   await page.getByRole('heading', { name: 'mend.qrs' }).waitFor();
@@ -141,7 +129,7 @@ test('a word that a choice lacks, a beginning that is gone, and links that are t
   ];
   const blocks: Drawing = [['TrikV6EnginesStop', { Mode: 'fast' }], ['Timer']];
   const page = await opened(
-    await project(blocks, links, (draft, [begin = '']) => draft.apply({ do: 'remove', ids: [begin] })),
+    await project(blocks, links, (draft, [first = '']) => draft.apply({ do: 'remove', ids: [first] })),
   );
   await list(page).getByRole('button', { name: 'Add a beginning' }).click();
   await page.locator('.svelte-flow__node').filter({ hasText: 'Initial Node' }).waitFor();

@@ -1,33 +1,16 @@
 // A person draws a program of data flow with mouse and keys, has it run, and keeps it.
 
 import { readFileSync, readdirSync } from 'node:fs';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Locator, Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site, drafted, library } from './site';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
+import { drafted, library } from './site';
 
 const EXAMPLES = join(import.meta.dirname, '../../../examples/dataflow');
 
-let look: Look;
-let site: Site;
-let home: string;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
+const here = begin();
 
 const nodes = (page: Page): Locator => page.locator('.svelte-flow__node');
 const edges = (page: Page): Locator => page.locator('.svelte-flow__edge');
@@ -38,7 +21,7 @@ async function shot(page: Page, name: string): Promise<void> {
 
 /** A new program of data flow. */
 async function begun(): Promise<Page> {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await nodes(page).first().waitFor();
   await page.getByRole('button', { name: 'New data flow' }).click();
   await page.getByText('Drag blocks here').waitFor();
@@ -48,7 +31,7 @@ async function begun(): Promise<Page> {
 /** Drags a block from the list to a place of the sheet, in px from its upper left corner. */
 async function drag(page: Page, title: string, x: number, y: number): Promise<void> {
   const count = await nodes(page).count();
-  const source = page.getByRole('button', { name: `Add ${title}`, exact: true });
+  const source = button(page, `Add ${title}`);
   await source.dragTo(page.locator('.svelte-flow'), { targetPosition: { x, y } });
   await eventually(`${title} is there`, async () => (await nodes(page).count()) > count);
 }
@@ -84,8 +67,8 @@ async function set(page: Page, block: number, label: string, value: string): Pro
 
 async function saved(page: Page, name: string): Promise<Uint8Array> {
   const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Save', exact: true }).click();
-  const file = join(home, name);
+  await button(page, 'Save').click();
+  const file = join(here.home, name);
   await (await download).saveAs(file);
   return new Uint8Array(readFileSync(file));
 }
@@ -126,7 +109,7 @@ test('a program drawn with the mouse drives to the wall, and its tokens are seen
   await page.getByText('sensorD1').first().waitFor({ state: 'attached' });
   await page.getByLabel('Show the program as').selectOption('lua');
   await page.getByLabel('Speed').selectOption('1');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.locator('.token').first().waitFor();
   await expect.poll(() => page.locator('.block.lit').count()).toBeGreaterThan(1);
   await shot(page, 'flow');
@@ -141,7 +124,7 @@ test('a program drawn with the mouse drives to the wall, and its tokens are seen
   const judged = drawn.value.judge({ trajectory: true });
   expect(judged.ok && judged.value.verdict).toBe('ended');
   // The same from the beginning takes as long as the judge says.
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   const seconds = judged.ok ? (judged.value.ms / 1000).toFixed(2) : '';
   await page.getByText(`Time: ${seconds} s`).waitFor();
   await page.context().close();
@@ -171,7 +154,7 @@ test('a wrong connection is refused in words, and everything is taken back', asy
 test('by keys alone a program is drawn and run', async () => {
   const page = await begun();
   for (const title of ['Value generator', 'Motors']) {
-    await page.getByRole('button', { name: `Add ${title}`, exact: true }).press('Enter');
+    await button(page, `Add ${title}`).press('Enter');
     await page.getByRole('heading', { name: title }).waitFor();
   }
   await nodes(page).first().press('Enter');
@@ -191,7 +174,7 @@ test('by keys alone a program is drawn and run', async () => {
 });
 
 test('each program of the library is opened, drawn, saved and opened again as the same', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await nodes(page).first().waitFor();
   const files = readdirSync(EXAMPLES).filter((name) => name.endsWith('.flow'));
   expect(files.length).toBeGreaterThan(4);
@@ -201,7 +184,7 @@ test('each program of the library is opened, drawn, saved and opened again as th
     await page.getByRole('heading', { name: title }).waitFor();
     await page.getByText('Its comments are not kept').waitFor();
     const bytes = await saved(page, title);
-    await page.getByLabel('Open').setInputFiles(join(home, title));
+    await page.getByLabel('Open').setInputFiles(join(here.home, title));
     await page.getByText('Its comments are not kept').waitFor({ state: 'detached' });
     const [one, other] = await Promise.all([drafted(bytes), drafted(await saved(page, title))]);
     expect(other.about()).toEqual(one.about());
@@ -213,9 +196,9 @@ test('each program of the library is opened, drawn, saved and opened again as th
 });
 
 test('blocks of one language are not pasted into a program of the other', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await nodes(page).first().waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await eventually('it is there', async () => (await nodes(page).count()) === 3);
   await nodes(page).nth(2).click();
   await page.keyboard.press('Control+c');

@@ -3,24 +3,12 @@
 // The questions of the browser cannot be answered by a test: folders are those of the page's own place on the disk, which are real.
 
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site, library } from './site';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
+import { library } from './site';
 
-let look: Look;
-let site: Site;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-});
+const here = begin();
 
 /** Answers the browser's questions: the folder `lessons`, and the file `one.qrs` in it. */
 const PICKERS = `
@@ -43,7 +31,7 @@ const PICKERS = `
 `;
 
 async function opened(): Promise<Page> {
-  const page = await look.open(site.url, {}, (begun: Page) => void begun.addInitScript(PICKERS));
+  const page = await here.look.open(here.site.url, {}, (begun: Page) => void begun.addInitScript(PICKERS));
   page.setDefaultTimeout(20_000);
   await node(page, 'Initial Node').waitFor();
   const made = (await library()).blank('lesson.qrs');
@@ -58,7 +46,6 @@ async function opened(): Promise<Page> {
 
 const node = (page: Page, name: string) =>
   page.locator('.svelte-flow__node').filter({ has: page.locator('strong', { hasText: name }) });
-const button = (page: Page, name: string) => page.getByRole('button', { name, exact: true });
 
 async function addTimer(page: Page): Promise<void> {
   const before = await node(page, 'Timer').count();
@@ -99,7 +86,7 @@ test('projects of a folder are opened by a click and saved where they are', asyn
   await button(page, 'broken.qrs').click();
   await page.getByText('broken.qrs is not opened').waitFor();
   await page.getByRole('heading', { name: 'two.qrs' }).waitFor();
-  // What has come since is there after another look.
+  // What has come since is there after another here.look.
   await page.evaluate(`get('one.qrs').then((text) => put('new.qrs', text))`);
   await button(page, 'Look again').click();
   await button(page, 'new.qrs').waitFor();
@@ -174,7 +161,7 @@ test('a file that may not be written, or is gone, is given as a copy; so is one 
 
 test('a browser without folders has none of it', async () => {
   const without = 'delete globalThis.showOpenFilePicker; delete globalThis.showDirectoryPicker;';
-  const page = await look.open(site.url, {}, (begun: Page) => void begun.addInitScript(without));
+  const page = await here.look.open(here.site.url, {}, (begun: Page) => void begun.addInitScript(without));
   await node(page, 'Initial Node').waitFor();
   expect(await button(page, 'Open a folder').count()).toBe(0);
   const chooser = page.waitForEvent('filechooser');

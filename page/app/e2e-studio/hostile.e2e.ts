@@ -1,32 +1,18 @@
 // Files and links of strangers: told in words, and what was drawn stays.
 
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
-import { afterAll, beforeAll, expect, test } from 'vitest';
-import { Look } from '../e2e/robot.js';
-import { Site, library } from './site';
+import { expect, test } from 'vitest';
+import { begin, button } from './begin';
+import { library } from './site';
 
-let look: Look;
-let site: Site;
-let home: string;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
+const here = begin({ mayComplain: true });
 
 const starts = (page: Page) => page.locator('.svelte-flow__node', { hasText: 'Initial Node' });
 
 test('a file that is no project is refused by name, and the drawing stays', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await starts(page).waitFor();
   for (const [name, bytes] of [
     ['empty.qrs', ''],
@@ -34,14 +20,14 @@ test('a file that is no project is refused by name, and the drawing stays', asyn
     ['<img src=x onerror=alert(1)>.qrs', 'PK\u0003\u0004'],
     ['world.qrs', '<root/>'],
   ] as const) {
-    const file = join(home, 'file.qrs');
+    const file = join(here.home, 'file.qrs');
     writeFileSync(file, bytes);
     const chosen = { name, mimeType: 'application/zip', buffer: Buffer.from(bytes) };
     await page.locator('input[type=file][accept^=".qrs"]').setInputFiles(chosen);
     await page.getByRole('alert').getByText(`${name} is not opened`).waitFor();
     expect(await starts(page).count()).toBe(1);
   }
-  expect(look.complaints).toEqual([]);
+  expect(here.look.complaints).toEqual([]);
   await page.context().close();
 });
 
@@ -67,7 +53,7 @@ test('names and texts with scripts in them are texts', async () => {
   for (const change of changes) expect(draft.apply(change)).toMatchObject({ ok: true });
   const save = draft.save();
   if (!save.ok) throw new Error('no save');
-  const page = await look.open(site.url);
+  const page = await here.open();
   await starts(page).waitFor();
   await page
     .locator('input[type=file][accept^=".qrs"]')
@@ -77,35 +63,35 @@ test('names and texts with scripts in them are texts', async () => {
   await page.getByText(evil).first().waitFor();
   expect(await page.evaluate('globalThis.evil')).toBe(undefined);
   expect(await page.locator('img').count()).toBe(0);
-  expect(look.complaints).toEqual([]);
+  expect(here.look.complaints).toEqual([]);
   await page.context().close();
 });
 
 test('a link carries a project, and a broken link is told', async () => {
-  const page = await look.open(site.url, { permissions: ['clipboard-read', 'clipboard-write'] });
+  const page = await here.look.open(here.site.url, { permissions: ['clipboard-read', 'clipboard-write'] });
   await starts(page).waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await page.locator('.svelte-flow__node', { hasText: 'Timer' }).waitFor();
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is on the clipboard').waitFor();
   const address = await page.evaluate('navigator.clipboard.readText()');
-  const other = await look.open(String(address));
+  const other = await here.look.open(String(address));
   await other.locator('.svelte-flow__node', { hasText: 'Timer' }).waitFor();
   // No server is told what is in it.
-  expect(site.asked.filter((path) => path.includes('project='))).toEqual([]);
+  expect(here.site.asked.filter((path) => path.includes('project='))).toEqual([]);
   for (const hash of ['#project=', '#project=a:!!!', `#project=%E0%A4%A:AAAA`, '#project=a.qrs:UEsDBA']) {
-    const broken = await look.open(`${site.url}${hash}`);
+    const broken = await here.look.open(`${here.site.url}${hash}`);
     await broken.getByRole('alert').waitFor();
     await starts(broken).waitFor();
     await broken.context().close();
   }
-  expect(look.complaints).toEqual([]);
+  expect(here.look.complaints).toEqual([]);
   await page.context().close();
   await other.context().close();
 });
 
 test('blocks of a strange clipboard do no harm', async () => {
-  const page = await look.open(site.url, { permissions: ['clipboard-read', 'clipboard-write'] });
+  const page = await here.look.open(here.site.url, { permissions: ['clipboard-read', 'clipboard-write'] });
   await starts(page).waitFor();
   const texts = [
     'no blocks',
@@ -121,9 +107,9 @@ test('blocks of a strange clipboard do no harm', async () => {
     await page.locator('.svelte-flow__pane').click({ position: { x: 5, y: 5 } });
     await page.keyboard.press('Control+v');
   }
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await page.locator('.svelte-flow__node', { hasText: 'Timer' }).waitFor();
   expect(await page.locator('.svelte-flow__node').count()).toBe(3);
-  expect(look.complaints).toEqual([]);
+  expect(here.look.complaints).toEqual([]);
   await page.context().close();
 });

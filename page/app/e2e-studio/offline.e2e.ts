@@ -2,6 +2,7 @@
 
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { Look } from '../e2e/robot.js';
+import { button } from './begin';
 import { Site } from './site';
 
 let look: Look;
@@ -29,9 +30,9 @@ test('once it was open it works without its server', async () => {
   await site.end();
   await page.reload();
   await expect.poll(() => blocks.count()).toBe(2);
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await expect.poll(() => blocks.count()).toBe(3);
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.getByText('The program has ended by a mistake.').waitFor();
   expect(outside).toEqual([]);
   await page.context().close();

@@ -4,9 +4,9 @@ import { type ChildProcess, execFileSync, spawn } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site } from './site';
+import { afterEach, expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
 
 const TRIKD = resolve(
   process.env['TRIK'] ?? join(import.meta.dirname, '../../../target/debug/trik'),
@@ -76,30 +76,18 @@ class Guarded {
   }
 }
 
-let look: Look;
-let site: Site;
 let robot: Guarded;
 
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-});
-afterEach(async () => {
-  await robot.end();
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-});
+const here = begin();
+afterEach(() => robot.end());
 
 test('the code of the robot pairs this computer, and a wrong one says so', async () => {
   robot = await Guarded.start();
-  const page = await look.open(`http://127.0.0.1:${robot.port}/`);
+  const page = await here.look.open(`http://127.0.0.1:${robot.port}/`);
   await page.getByText('This computer may only look').waitFor();
   const field = page.getByLabel('Pairing code');
   await field.fill('12 34 5');
-  await page.getByRole('button', { name: 'Pair', exact: true }).click();
+  await button(page, 'Pair').click();
   await page.getByText('this is no pairing code of the robot').waitFor();
   expect(await barriers(page)).toEqual([]);
   expect(robot.paired).toBe('');
@@ -116,9 +104,9 @@ test('the code of the robot pairs this computer, and a wrong one says so', async
 
 test('a studio from elsewhere takes the code along with the project', async () => {
   robot = await Guarded.start();
-  const page = await look.open(site.url);
+  const page = await here.open();
   await page.locator('.svelte-flow__node').first().waitFor();
-  await page.getByRole('button', { name: 'Add Timer', exact: true }).click();
+  await button(page, 'Add Timer').click();
   await page.getByText('To a robot').click();
   await page.getByLabel('Address of the robot').fill(`127.0.0.1:${robot.port}`);
   await page.getByLabel('Pairing code, if it wants one').fill(robot.code());

@@ -1,38 +1,21 @@
 // A person puts pictures into a world, by a button, dropped and pasted, and draws by hand.
 
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Locator, Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
 import { stored } from '../src/studio/world/pictures';
-import { Site, drafted } from './site';
+import { begin, button } from './begin';
+import { drafted } from './site';
 
-let look: Look;
-let site: Site;
-let home: string;
+const here = begin();
 
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-pictures-'));
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
-
-const button = (page: Page, name: string): Locator => page.getByRole('button', { name, exact: true });
 const item = (page: Page, key: string): Locator => page.locator(`.item[data-key="${key}"]`);
 
 /** A page with a world. */
 async function opened(): Promise<Page> {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await page.locator('.svelte-flow__node').first().waitFor();
   await button(page, 'World').click();
   await button(page, 'Make a world').click();
@@ -44,7 +27,7 @@ async function opened(): Promise<Page> {
 async function savedOf(page: Page): Promise<{ world: string; images: ReturnType<typeof stored> }> {
   const download = page.waitForEvent('download');
   await button(page, 'Save').click();
-  const file = join(home, 'pictures.qrs');
+  const file = join(here.home, 'pictures.qrs');
   await (await download).saveAs(file);
   const draft = await drafted(new Uint8Array(readFileSync(file)));
   return { world: draft.world() ?? '', images: stored(draft.images() ?? '') };
@@ -162,7 +145,7 @@ test('pictures are dropped and pasted', async () => {
   const rects = [...world.matchAll(/<image [^>]*rect="([^"]*)"/g)].map(([, rect]) => rect);
   expect(new Set(rects).size).toBe(3);
   // A project that is dropped is still opened: nothing else takes it.
-  expect(page.url()).toContain(site.url);
+  expect(page.url()).toContain(here.site.url);
   await page.context().close();
 });
 

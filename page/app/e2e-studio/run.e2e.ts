@@ -1,38 +1,21 @@
 // A person holds a run, looks back at it, measures it, and makes it many times.
 
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { Site } from './site';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
 
 const ROOT = join(import.meta.dirname, '../../..');
 const LINE = join(ROOT, 'examples/diagrams/line.qrs');
 const WORLD = join(ROOT, 'examples/dataflow/line.xml');
 
-let look: Look;
-let site: Site;
-let home: string;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-studio-'));
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
+const here = begin();
 
 /** The studio with a program that follows a line, in its world. */
 async function line(): Promise<Page> {
-  const page = await look.open(site.url);
+  const page = await here.open();
   page.setDefaultTimeout(20_000);
   await page.getByLabel('Open').setInputFiles(LINE);
   await node(page, 'Timer').waitFor();
@@ -43,7 +26,6 @@ async function line(): Promise<Page> {
 
 const node = (page: Page, name: string) =>
   page.locator('.svelte-flow__node').filter({ has: page.locator('strong', { hasText: name }) });
-const button = (page: Page, name: string) => page.getByRole('button', { name, exact: true });
 const status = (page: Page) => page.locator('.held [role=status]');
 
 async function fill(page: Page, label: string, text: string): Promise<void> {
@@ -60,7 +42,7 @@ async function time(page: Page): Promise<number> {
 async function given(page: Page, name: string): Promise<string> {
   const download = page.waitForEvent('download');
   await button(page, name).click();
-  const file = join(home, 'given.csv');
+  const file = join(here.home, 'given.csv');
   await (await download).saveAs(file);
   return readFileSync(file, 'utf8');
 }

@@ -3,24 +3,12 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
-import { SITE, Site } from './site';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
+import { SITE } from './site';
 
-let look: Look;
-let site: Site;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-});
+const here = begin();
 
 /** The robot has to be 100 pixels ahead within two seconds. */
 const WORLD = `<root version="20251219"><world><regions>
@@ -62,11 +50,11 @@ async function run(page: Page, name: string, text: string, world?: string): Prom
     await page.getByText('World: world.xml').waitFor();
   }
   await page.getByLabel('Speed').selectOption('fastest');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
 }
 
 async function opened(): Promise<Page> {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await page.getByRole('button', { name: 'New in JavaScript' }).waitFor();
   return page;
 }
@@ -131,7 +119,7 @@ test('a program reaches nothing but its robot', async () => {
   // What closes the function around a program is a mistake of its text.
   await run(page, 'out.js', 'print(1);\n}; fetch("/"); {\n');
   await page.getByRole('button', { name: 'Line 2' }).waitFor();
-  look.complaints.splice(0);
+  here.look.complaints.splice(0);
   await page.close();
 });
 
@@ -163,7 +151,7 @@ test.each(HOSTILE)('%s ends, and the page says why', async (name, text, seen) =>
   const page = await opened();
   await run(page, name, text);
   await page.locator('.said, .lines').filter({ hasText: seen }).first().waitFor({ timeout: 90_000 });
-  await page.getByRole('button', { name: 'Run', exact: true }).waitFor();
+  await button(page, 'Run').waitFor();
   await page.close();
 });
 
@@ -208,7 +196,7 @@ test.skipIf(!HAS_PYTHON && process.env['TRIK_REQUIRE_TOOLS'] !== '1')(
     });
     await page.getByText('World: world.xml').waitFor();
     await page.getByLabel('Speed').selectOption('fastest');
-    await page.getByRole('button', { name: 'Run', exact: true }).click();
+    await button(page, 'Run').click();
     await verdict(page).filter({ hasText: 'The task is done' }).waitFor({ timeout: 120_000 });
     await page.getByText('hello Ada').waitFor();
     await run(page, 'wrong.py', 'print(1)\nscript.wait(20)\nnothing\n');
@@ -227,8 +215,8 @@ test('without Python the studio says how it comes', async () => {
   // As on a site that was built without it.
   await page.route('**/python/**', (route) => route.fulfill({ status: 404 }));
   await run(page, 'drive.py', 'print(1)\n');
-  await page.getByText('web/site.sh --python').waitFor();
-  look.complaints.splice(0);
+  await page.getByText('web/here.site.sh --python').waitFor();
+  here.look.complaints.splice(0);
   await page.close();
 });
 
@@ -246,11 +234,11 @@ test('a program that is not saved is there when the page is opened again, and is
   await page.reload();
   await page.locator('.cm-content', { hasText: '// mine' }).waitFor();
   const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  await button(page, 'Save').click();
   const file = await download;
   expect(file.suggestedFilename()).toBe('program.js');
   expect(readFileSync(await file.path(), 'utf8')).toContain('// mine\nbrick.motor(M3)');
-  await page.getByRole('button', { name: 'New', exact: true }).click();
+  await button(page, 'New').click();
   await page.locator('.svelte-flow').waitFor();
   await page.close();
 });

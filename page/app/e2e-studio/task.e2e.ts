@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { Look } from '../e2e/robot.js';
+import { button } from './begin';
 import { SITE, Site, library } from './site';
 
 const ROOT = resolve(import.meta.dirname, '../../..');
@@ -41,7 +42,7 @@ test('the task is open, its world stays, and a program of a pupil is judged in i
   expect(await page.getByRole('button', { name: 'Load a world' }).count()).toBe(0);
   expect(await page.getByRole('button', { name: 'Take back' }).isDisabled()).toBe(true);
   await page.getByLabel('Speed').selectOption('fastest');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.getByText('The task is done.').waitFor();
   // Many runs, on all cores.
   await page.getByText('Many runs').click();
@@ -53,15 +54,15 @@ test('the task is open, its world stays, and a program of a pupil is judged in i
   await page.getByLabel('Open').setInputFiles(join(ROOT, 'examples/diagrams/line.qrs'));
   await page.getByRole('heading', { name: 'line.qrs' }).waitFor();
   await page.getByText('The task is done in 6.').waitFor({ state: 'detached' });
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.getByText('The task is done.').waitFor();
-  await page.getByRole('button', { name: 'New', exact: true }).click();
+  await button(page, 'New').click();
   await page.getByRole('heading', { name: 'follow.qrs' }).waitFor();
   // The task from its beginning; without its first link it does nothing.
   await page.getByRole('group', { name: /^Link from Initial Node/ }).focus();
   await page.keyboard.press('Enter');
   await page.keyboard.press('Delete');
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await page.locator('.verdict').getByText('The program has ended by a mistake.').waitFor();
   expect(look.complaints).toEqual([]);
   await page.context().close();
@@ -87,7 +88,7 @@ test('a program with text is judged in the world of the task', async () => {
     await page.getByText('World: that of the task').waitFor();
     expect(await page.getByRole('button', { name: 'Load a world' }).count()).toBe(0);
     await page.getByLabel('Speed').selectOption('fastest');
-    await page.getByRole('button', { name: 'Run', exact: true }).click();
+    await button(page, 'Run').click();
     await page.getByText('The task is done.').waitFor();
   }
   line.value.free();

@@ -1,24 +1,12 @@
 // The program as text beside the drawing: block and line are chosen and lit together.
 
 import type { Locator, Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers } from '../e2e/robot.js';
-import { Site, library } from './site';
+import { expect, test } from 'vitest';
+import { barriers } from '../e2e/robot.js';
+import { begin, button } from './begin';
+import { library } from './site';
 
-let look: Look;
-let site: Site;
-
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-});
+const here = begin();
 
 /** A save of a program that waits, and waits in a subprogram. */
 async function waits(): Promise<Uint8Array> {
@@ -84,7 +72,7 @@ async function write(page: Page, language: string): Promise<void> {
 }
 
 test('block and line are chosen together, in every language, also in a subprogram', async () => {
-  const page = await look.open(site.url);
+  const page = await here.open();
   await node(page, 'Initial Node').waitFor();
   const chosen = { name: 'waits.qrs', mimeType: 'application/zip', buffer: Buffer.from(await waits()) };
   await page.locator('input[type=file][accept^=".qrs"]').setInputFiles(chosen);
@@ -110,7 +98,7 @@ test('block and line are chosen together, in every language, also in a subprogra
   await expect.poll(() => page.locator('.svelte-flow__node.selected').count()).toBe(1);
   expect(await page.locator('[role=option][aria-selected=true]').first().textContent()).toContain('rest');
 
-  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await button(page, 'Run').click();
   await expect.poll(() => line(page, '51700').getAttribute('class')).toContain('lit');
   if (process.env['SHOTS']) await page.screenshot({ path: `${process.env['SHOTS']}/studio-text.png` });
   await page.context().close();

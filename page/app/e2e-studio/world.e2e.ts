@@ -1,43 +1,26 @@
 // A person draws a world with its rules, by mouse and by keys, and has a program judged in it.
 
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import type { Locator, Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { Look, barriers, eventually } from '../e2e/robot.js';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from '../e2e/robot.js';
+import { begin, button } from './begin';
 import { SITE, Site, drafted, library } from './site';
 
 const ROOT = resolve(import.meta.dirname, '../../..');
 const TRIK = process.env['TRIK'] ?? join(ROOT, 'target/debug/trik');
 
-let look: Look;
-let site: Site;
-let home: string;
+const here = begin();
 
-beforeAll(async () => {
-  look = await Look.start();
-  site = await Site.start();
-  home = mkdtempSync(join(tmpdir(), 'trik-world-'));
-});
-afterEach(() => {
-  expect(look.complaints).toEqual([]);
-});
-afterAll(async () => {
-  await look?.end();
-  await site?.end();
-  rmSync(home, { recursive: true, force: true });
-});
-
-const button = (page: Page, name: string): Locator => page.getByRole('button', { name, exact: true });
 const item = (page: Page, key: string): Locator => page.locator(`.item[data-key="${key}"]`);
 
 /** The text of the world, from the project as a file. */
 async function worldOf(page: Page): Promise<string> {
   const download = page.waitForEvent('download');
   await button(page, 'Save').click();
-  const file = join(home, 'world.qrs');
+  const file = join(here.home, 'world.qrs');
   await (await download).saveAs(file);
   const draft = await drafted(new Uint8Array(readFileSync(file)));
   return draft.world() ?? '';
@@ -73,7 +56,7 @@ async function ahead(world?: string): Promise<Uint8Array> {
 }
 
 async function opened(options = {}, world?: string): Promise<Page> {
-  const page = await look.open(site.url, options);
+  const page = await here.look.open(here.site.url, options);
   await page.locator('.svelte-flow__node').first().waitFor();
   const buffer = Buffer.from(await ahead(world));
   const chosen = { name: 'ahead.qrs', mimeType: 'application/zip', buffer };
@@ -383,11 +366,11 @@ test('the world of a task is shown and stays', async () => {
   draft.apply({ do: 'world', text });
   const saved = draft.save();
   if (!saved.ok) throw new Error('no save');
-  writeFileSync(join(home, 'task.qrs'), saved.value);
-  const folder = join(home, 'out');
-  execFileSync(TRIK, ['site', folder, '--studio', SITE, '--task', join(home, 'task.qrs')]);
+  writeFileSync(join(here.home, 'task.qrs'), saved.value);
+  const folder = join(here.home, 'out');
+  execFileSync(TRIK, ['site', folder, '--studio', SITE, '--task', join(here.home, 'task.qrs')]);
   const tasks = await Site.start(folder);
-  const page = await look.open(tasks.url);
+  const page = await here.look.open(tasks.url);
   await page.getByRole('heading', { name: 'task.qrs' }).waitFor();
   await button(page, 'World').click();
   await page.getByText('are those of the task').waitFor();

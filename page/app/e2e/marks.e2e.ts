@@ -1,10 +1,10 @@
 // The page of marks, over a class that is judged meanwhile.
 
-import { existsSync, readdirSync, rmSync } from 'node:fs';
+import { existsSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { afterAll, afterEach, beforeAll, beforeEach, expect, test } from 'vitest';
 import { ru } from '../src/marks/ru';
-import { Judging, Look, barriers, eventually, newHome } from './robot.js';
+import { Judging, Look, Robot, barriers, eventually, newHome } from './robot.js';
 import { ENDLESS, HOSTILE, school } from './school.js';
 
 const PATIENT = ['--wall-limit', '3000', '--time-limit', '3000'];
@@ -137,6 +137,39 @@ test(
     expect(existsSync(join(home, 'g.html'))).toBe(true);
     expect(existsSync(join(home, 'g-replays/anna'))).toBe(true);
     expect(replays()).toEqual([]);
+  },
+  TIME_MS,
+);
+
+test(
+  'with a class the robots stand above the marks, and a stop reaches them while others are judged',
+  async () => {
+    const robot = await Robot.startIn(home, 'a');
+    try {
+      writeFileSync(join(home, 'room.txt'), 'anna ./a red\n');
+      const words = school(home, { anna: 'good', boris: ENDLESS });
+      judging = await Judging.start(home, ...words, ...PATIENT, '--class', join(home, 'room.txt'));
+      const page = await look.open(judging.url);
+      await page.getByText('1 of 1 reached, 0 running').waitFor();
+      const anna = page.getByRole('row', { name: /^anna/ });
+      await anna.getByRole('link', { name: 'accomplished: replay of anna, road/long' }).waitFor();
+      robot.write('motors/M3/value', '40');
+      await shot(page, 'class');
+      expect(await barriers(page)).toEqual([]);
+      await page.keyboard.press('Space');
+      await page.getByText('1 at rest, the last after').waitFor();
+      expect(robot.read('motors/M3/value')).toBe('0');
+
+      // Marks alone, for a screen that the class sees.
+      const alone = await look.open(judging.url.replace('/class', '/marks'));
+      await alone.getByRole('row', { name: /^anna/ }).getByText('out of time').waitFor();
+      expect(await alone.getByRole('button').count()).toBe(0);
+      await alone.context().close();
+      await page.context().close();
+      expect(await judging.end()).toBe('SIGINT');
+    } finally {
+      await robot.leave();
+    }
   },
   TIME_MS,
 );

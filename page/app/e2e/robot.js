@@ -245,7 +245,7 @@ export class Judging {
   /** @param {string} folder @param {string[]} args */
   constructor(folder, args) {
     // Replays that nobody names a folder for go below this one, so that it can be seen that they go.
-    const env = { ...process.env, TMPDIR: folder };
+    const env = { ...process.env, TMPDIR: folder, XDG_RUNTIME_DIR: folder };
     const words = ['check', ...args, '--page', '--page-port', '0'];
     this.child = spawn(TRIK, words, { cwd: folder, env, stdio: ['ignore', 'pipe', 'pipe'] });
     for (const stream of [this.child.stdout, this.child.stderr]) {

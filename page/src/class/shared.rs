@@ -11,6 +11,8 @@ use tokio::sync::Semaphore;
 /// A class that is served.
 pub struct Class {
     pub name: String,
+    /// The page shows marks too, which have a socket of their own.
+    pub has_marks: bool,
     pub board: Arc<Board>,
     pub guests: Arc<dyn Guests>,
     pub admission: Admission,

@@ -245,8 +245,8 @@ fn nothing_is_given_to_pages_of_others() {
     let at = page.address();
     assert!(get(at, "/", "").starts_with("HTTP/1.1 307 "));
     for (path, headers) in [
-        ("/socket", ""),
-        ("/socket", "Cookie: trik=guessed\r\n"),
+        ("/socket/class", ""),
+        ("/socket/class", "Cookie: trik=guessed\r\n"),
         ("/class", "Origin: http://evil.example\r\n"),
     ] {
         let answer = get(at, path, headers);

@@ -119,7 +119,7 @@ async fn tell(
     let board = &class.board;
     let mut changes = board.watch();
     let may_drive = class.guests.may_drive(who.address.ip());
-    let mut texts = vec![word::hello(&class.name, board, may_drive)];
+    let mut texts = vec![word::hello(class, may_drive)];
     changes.mark_changed();
     // Numbers of changes begin with 1, and the first cards have none: a page knows of itself that nothing is known.
     let mut seen = 0;

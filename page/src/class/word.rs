@@ -1,9 +1,10 @@
 //! What a viewer of a class and this server say to each other: JSON objects, and files behind one.
 //!
-//! Owns their forms; `page/app/src/class/words.ts` has the other end. Pure.
+//! Owns their forms; `page/app/src/class/news.ts` has the other end. Pure.
 
-use super::board::{Battery, Board, Card, Commander, Reach, Sending, Stage, Stop};
+use super::board::{Battery, Card, Commander, Reach, Sending, Stage, Stop};
 use super::member::OwnPage;
+use super::shared::Class;
 use super::words::Refused;
 use crate::limits;
 use axum::body::Bytes;
@@ -116,17 +117,19 @@ fn name(value: &Value) -> Result<String, Refused> {
 }
 
 /// What a viewer is told first.
-pub fn hello(name: &str, board: &Board, may_drive: bool) -> String {
-    let robots: Vec<_> = board
+pub fn hello(class: &Class, may_drive: bool) -> String {
+    let robots: Vec<_> = class
+        .board
         .titles
         .iter()
         .map(|one| json!({ "name": one.name, "group": one.group, "at": one.at }))
         .collect();
     json!({
         "is": "hello",
-        "name": name,
+        "name": class.name,
         "version": env!("CARGO_PKG_VERSION"),
         "drives": may_drive,
+        "marks": class.has_marks,
         "robots": robots,
     })
     .to_string()

@@ -9,8 +9,8 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 /// Two pupils, one task.
-fn page() -> MarksPage {
-    let sheet = MarkTable {
+fn sheet() -> MarkTable {
+    MarkTable {
         name: "class".to_owned(),
         pupils: vec!["anna".to_owned(), "<script>".to_owned()],
         columns: vec![Column {
@@ -21,8 +21,11 @@ fn page() -> MarksPage {
         rows: vec![waiting(), waiting()],
         left_out: (vec!["x.txt is left out".to_owned()], 3),
         ..MarkTable::default()
-    };
-    MarksPage::start("127.0.0.1:0".parse().unwrap(), sheet).unwrap()
+    }
+}
+
+fn page() -> MarksPage {
+    MarksPage::start("127.0.0.1:0".parse().unwrap(), sheet(), None).unwrap()
 }
 
 fn waiting() -> Row {
@@ -58,7 +61,7 @@ fn judged(run: usize, replay: Option<&std::path::Path>) -> Row {
 }
 
 fn cookie(page: &MarksPage) -> String {
-    let answer = get(page.address(), MarksPage::path(), "");
+    let answer = get(page.address(), page.path(), "");
     let line = answer
         .lines()
         .find_map(|line| line.strip_prefix("set-cookie: "));
@@ -66,13 +69,17 @@ fn cookie(page: &MarksPage) -> String {
 }
 
 fn viewer(page: &MarksPage, language: &str) -> Socket {
+    viewer_of(page, "marks", language)
+}
+
+fn viewer_of(page: &MarksPage, what: &str, language: &str) -> Socket {
     let (at, cookie) = (page.address(), cookie(page));
     let mut stream = TcpStream::connect(at).unwrap();
     stream
         .set_read_timeout(Some(Duration::from_secs(60)))
         .unwrap();
     let request = format!(
-        "GET /socket?language={language} HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\n\
+        "GET /socket/{what}?language={language} HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\n\
          Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
     );
     stream.write_all(request.as_bytes()).unwrap();
@@ -150,7 +157,7 @@ fn nothing_is_given_to_pages_of_others() {
     let at = page.address();
     assert!(get(at, "/", "").starts_with("HTTP/1.1 307 "));
     for (path, headers) in [
-        ("/socket", ""),
+        ("/socket/marks", ""),
         ("/replay/0", "Cookie: trik=guessed\r\n"),
         ("/marks", "Origin: http://evil.example\r\n"),
     ] {
@@ -161,4 +168,30 @@ fn nothing_is_given_to_pages_of_others() {
     let answer = get(at, "/marks", "");
     let policy = "content-security-policy: default-src 'none'; script-src 'self'";
     assert!(answer.contains(policy), "{answer}");
+}
+
+#[test]
+fn with_a_class_the_robots_are_on_the_same_page_and_marks_alone_on_their_own() {
+    let class = |name: &str| ClassSettings {
+        name: name.to_owned(),
+        robots: Vec::new(),
+        guests: Arc::new(Everybody),
+    };
+    let at = "127.0.0.1:0".parse().unwrap();
+    let page = MarksPage::start(at, sheet(), Some(class("room"))).unwrap();
+    assert_eq!(page.path(), "/class");
+    let root = get(page.address(), "/", "");
+    assert!(root.contains("location: /class\r\n"), "{root}");
+    let hello = viewer_of(&page, "class", "en").until("\"hello\"");
+    let hello: Value = serde_json::from_str(&hello).unwrap();
+    assert_eq!(
+        (&hello["name"], &hello["marks"]),
+        (&"room".into(), &true.into())
+    );
+    viewer_of(&page, "marks", "en").until("\"waiting\":1");
+    let alone = get(page.address(), "/marks", "");
+    assert!(alone.contains("set-cookie: "), "{alone}");
+    // Marks without robots have no page of robots.
+    let other = self::page();
+    assert!(get(other.address(), "/class", "").starts_with("HTTP/1.1 404 "));
 }

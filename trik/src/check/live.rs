@@ -7,6 +7,7 @@ use super::args::CheckArgs;
 use super::grades::Grades;
 use super::row::Row;
 use super::words;
+use crate::class::page::settings;
 use crate::error::Error;
 use crate::limits;
 use crate::refusal::{Refusal, say};
@@ -89,19 +90,19 @@ impl Live {
         // Threads inherit what is blocked; processes that judge let them in again.
         let signals = signals().map_err(|error| Error::system("signals", error))?;
         let sheet = || grades.sheet(name(args), &waiting);
-        let at = |port: u16| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+        let start = |port: u16| {
+            let at = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+            MarksPage::start(at, sheet(), args.marks.class.as_ref().map(settings))
+        };
         let wanted = args.marks.port;
-        let page = match (
-            MarksPage::start(at(wanted.unwrap_or(PORT)), sheet()),
-            wanted,
-        ) {
+        let page = match (start(wanted.unwrap_or(PORT)), wanted) {
             // Another class is judged, or another program has it.
-            (Err(page::error::Error::Address(..)), None) => MarksPage::start(at(0), sheet()),
+            (Err(page::error::Error::Address(..)), None) => start(0),
             (page, _) => page,
         };
         let page = page
             .map_err(|error| Error::Refused(format!("{error}; --page-port names another port")))?;
-        let link = format!("http://{}{}", page.address(), MarksPage::path());
+        let link = format!("http://{}{}", page.address(), page.path());
         say(&[words::page_is_served(&link, args.language)]);
         if let Some(complaint) = args.marks.opens.then(|| browse(&link)).flatten() {
             say(&[complaint]);

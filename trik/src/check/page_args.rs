@@ -2,6 +2,7 @@
 //!
 //! Owns these options. Knows nothing of what they do.
 
+use crate::remote::roster::{Class, class};
 use clap::Args;
 
 /// Options of the page of marks.
@@ -18,4 +19,8 @@ pub(crate) struct MarksPageArgs {
     /// The TCP port of the page; 0 takes a free one [default: 8200, or any free one if that is taken].
     #[arg(long = "page-port", value_name = "PORT", requires = "is_served")]
     pub port: Option<u16>,
+    /// With --page: the robots that a file names on the same page, as `trik class page` has them, with a stop for all; with :GROUP
+    /// those of that group. This computer commands them.
+    #[arg(long = "class", value_name = "FILE[:GROUP]", requires = "is_served", value_parser = class)]
+    pub class: Option<Class>,
 }

@@ -6,7 +6,7 @@ use super::PageArgs;
 use crate::error::Error;
 use crate::output::standard;
 use crate::refusal::Refusal;
-use crate::remote::roster::Robot;
+use crate::remote::roster::{Class, Robot};
 use crate::up::page::{browse, reachable};
 use crate::up::session::signals;
 use lang_text::problem::Words;
@@ -64,18 +64,13 @@ impl Whereabouts for Robot {
 pub(super) fn serve(args: &PageArgs) -> Result<u8, Refusal> {
     // Threads inherit what is blocked.
     let signals = signals().map_err(|error| Error::system("signals", error))?;
-    let settings = |port: u16| ClassSettings {
-        address: SocketAddr::new(args.address, port),
-        name: args.class.name.clone(),
-        robots: args.class.robots.iter().map(member).collect(),
-        guests: Arc::new(Teacher),
+    let start = |port: u16| {
+        let at = SocketAddr::new(args.address, port);
+        ClassPage::start(at, settings(&args.class))
     };
-    let page = match (
-        ClassPage::start(settings(args.port.unwrap_or(PORT))),
-        args.port,
-    ) {
+    let page = match (start(args.port.unwrap_or(PORT)), args.port) {
         // Another class has it, or another program.
-        (Err(page::error::Error::Address(..)), None) => ClassPage::start(settings(0)),
+        (Err(page::error::Error::Address(..)), None) => start(0),
         (page, _) => page,
     };
     let page =
@@ -95,6 +90,15 @@ pub(super) fn serve(args: &PageArgs) -> Result<u8, Refusal> {
         let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];
         // A signal that interrupts this is read above.
         let _ = poll(&mut fds, PollTimeout::NONE);
+    }
+}
+
+/// A class as pages have it: this computer commands its robots, and everybody may look.
+pub(crate) fn settings(class: &Class) -> ClassSettings {
+    ClassSettings {
+        name: class.name.clone(),
+        robots: class.robots.iter().map(member).collect(),
+        guests: Arc::new(Teacher),
     }
 }
 

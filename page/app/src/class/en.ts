@@ -26,6 +26,7 @@ export const en = {
   noRobots: 'The class has no robots.',
 
   robots: 'Robots',
+  marks: 'Marks',
   choose: (name: string) => `Choose ${name}`,
   everybody: 'All',
   nobody: 'None',

@@ -53,7 +53,7 @@ export interface Card {
 
 /** What the page is told. */
 export type News =
-  | { is: 'hello'; name: string; version: string; drives: boolean; robots: Title[] }
+  | { is: 'hello'; name: string; version: string; drives: boolean; marks: boolean; robots: Title[] }
   | ({ is: 'robot'; id: number } & Card)
   | { is: 'refused'; why: string }
   | { is: 'beat' };

@@ -19,6 +19,8 @@ export class Room {
   isConnected = $state(false);
   /** This computer commands. */
   mayDrive = $state(false);
+  /** A class is judged: its marks have a socket of their own. */
+  hasMarks = $state(false);
   refusal = $state('');
   /** The clock of what is shown, which goes on once a second. */
   now_ms = $state(Date.now());
@@ -49,6 +51,7 @@ export class Room {
         const isSame = JSON.stringify(news.robots) === JSON.stringify(this.titles);
         this.name = news.name;
         this.mayDrive = news.drives;
+        this.hasMarks = news.marks;
         this.titles = news.robots;
         this.cards = news.robots.map(() => BLANK);
         this.#told_ms = news.robots.map(() => Date.now());

@@ -42,7 +42,9 @@ function room(): Room {
   const made = new Room('ws://server/');
   socket.onopen?.();
   const robots = ['anna', 'boris'].map((name) => ({ name, group: '', at: name }));
-  socket.onmessage?.({ data: JSON.stringify({ is: 'hello', name: 'room', drives: true, robots }) });
+  socket.onmessage?.({
+    data: JSON.stringify({ is: 'hello', name: 'room', drives: true, marks: true, robots }),
+  });
   return made;
 }
 

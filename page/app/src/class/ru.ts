@@ -26,6 +26,7 @@ export const ru: Words = {
   noRobots: 'В классе нет роботов.',
 
   robots: 'Роботы',
+  marks: 'Оценки',
   choose: (name) => `Выбрать: ${name}`,
   everybody: 'Все',
   nobody: 'Никто',

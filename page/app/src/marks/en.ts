@@ -6,6 +6,7 @@ import type { Tally } from './tally';
 export const en = {
   title: (name: string) => (name ? `${name} - TRIK marks` : 'TRIK marks'),
   heading: 'Marks',
+  headingOf: (name: string) => (name ? `Marks: ${name}` : 'Marks'),
   judged: ({ done, all }: Progress) => `${done} of ${all} judged`,
   over: 'All is judged.',
   stays: 'Ctrl-C in the terminal ends this page.',

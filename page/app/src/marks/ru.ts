@@ -5,6 +5,7 @@ import type { Words } from './en';
 export const ru: Words = {
   title: (name) => (name ? `${name} — оценки ТРИК` : 'Оценки ТРИК'),
   heading: 'Оценки',
+  headingOf: (name: string) => (name ? `Оценки: ${name}` : 'Оценки'),
   judged: ({ done, all }) => `Проверено: ${done} из ${all}`,
   over: 'Всё проверено.',
   stays: 'Страницу завершит Ctrl-C в терминале.',

@@ -152,13 +152,12 @@ pub fn page(robots: &[Option<SocketAddr>], guests: Arc<dyn Guests>) -> ClassPage
         at: "there".to_owned(),
         whereabouts: Arc::new(At(*at)),
     };
-    ClassPage::start(ClassSettings {
-        address: "127.0.0.1:0".parse().unwrap(),
+    let settings = ClassSettings {
         name: "room".to_owned(),
         robots: robots.iter().enumerate().map(member).collect(),
         guests,
-    })
-    .unwrap()
+    };
+    ClassPage::start("127.0.0.1:0".parse().unwrap(), settings).unwrap()
 }
 
 /// A viewer, and what it knows of each robot.
@@ -192,7 +191,7 @@ impl Viewer {
             .set_read_timeout(Some(Duration::from_secs(60)))
             .unwrap();
         let request = format!(
-            "GET /socket HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
+            "GET /socket/class HTTP/1.1\r\nHost: {at}\r\nCookie: {cookie}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
              Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
         );
         stream.write_all(request.as_bytes()).unwrap();

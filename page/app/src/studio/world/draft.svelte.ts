@@ -130,9 +130,11 @@ export class WorldDraft {
   }
 
   /** A picture shows another image, as wide as before. */
-  async changePicture(item: Item, chosen: Chosen): Promise<void> {
+  async changePicture({ key }: Item, chosen: Chosen): Promise<void> {
     const kept = await this.#withImage(chosen);
-    if (!this.model || !kept) return;
+    // As it is by now: the world may have changed meanwhile.
+    const item = this.model?.items.find((one) => one.key === key);
+    if (!this.model || !item || !kept) return;
     const { values } = item;
     const name = pictureRect(values);
     const [left = 0, top = 0, width = 0] = values.lengths(name, 4);
