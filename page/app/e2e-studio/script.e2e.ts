@@ -215,7 +215,7 @@ test('without Python the studio says how it comes', async () => {
   // As on a site that was built without it.
   await page.route('**/python/**', (route) => route.fulfill({ status: 404 }));
   await run(page, 'drive.py', 'print(1)\n');
-  await page.getByText('web/here.site.sh --python').waitFor();
+  await page.getByText('web/site.sh --python').waitFor();
   here.look.complaints.splice(0);
   await page.close();
 });
