@@ -1,4 +1,4 @@
-//! A server of HTTP/1.1 that gives one text, at `GET /metrics`.
+//! A server of HTTP/1.1 that gives one text, at one path.
 //!
 //! Owns the bounds of a request: bytes of its head, time, and how many there are at once. Each is served on a thread of its own
 //! and its connection closed. Knows nothing of what the text says.
@@ -15,25 +15,32 @@ use std::time::{Duration, Instant};
 /// What makes the text.
 pub type Text = Arc<dyn Fn() -> String + Send + Sync>;
 
+/// What is served.
+#[derive(Clone)]
+pub struct Served {
+    /// At this path, and nowhere else.
+    pub path: &'static str,
+    /// Its type.
+    pub media_type: &'static str,
+    /// The text.
+    pub text: Text,
+}
+
 /// Serves until the process ends; gives the address that it has.
 ///
 /// # Errors
 /// Nobody can listen there.
-pub fn serve(
-    address: SocketAddr,
-    media_type: &'static str,
-    text: Text,
-) -> Result<SocketAddr, Error> {
+pub fn serve(address: SocketAddr, served: Served) -> Result<SocketAddr, Error> {
     let refused = |why: io::Error| Error::Address(address, why.to_string());
     let listener = TcpListener::bind(address).map_err(refused)?;
     let bound = listener.local_addr().map_err(refused)?;
-    let work = move || accept(&listener, media_type, &text);
+    let work = move || accept(&listener, &served);
     let server = thread::Builder::new().name("http".to_owned()).spawn(work);
     server.map_err(|why| Error::Thread(why.to_string()))?;
     Ok(bound)
 }
 
-fn accept(listener: &TcpListener, media_type: &'static str, text: &Text) {
+fn accept(listener: &TcpListener, served: &Served) {
     let count = Arc::new(AtomicUsize::new(0));
     loop {
         let Ok((mut client, _)) = listener.accept() else {
@@ -50,11 +57,11 @@ fn accept(listener: &TcpListener, media_type: &'static str, text: &Text) {
             continue;
         }
         let place = Place(count.clone());
-        let text = text.clone();
+        let served = served.clone();
         let work = move || {
             let _place = place;
             // A client that has gone needs no answer.
-            let _ = one(&mut client, media_type, &text);
+            let _ = one(&mut client, &served);
         };
         // Without a thread the connection is closed.
         let _ = thread::Builder::new()
@@ -73,7 +80,7 @@ impl Drop for Place {
 }
 
 /// Serves one request.
-fn one(client: &mut TcpStream, media_type: &str, text: &Text) -> io::Result<()> {
+fn one(client: &mut TcpStream, served: &Served) -> io::Result<()> {
     let end = Instant::now() + REQUEST_TIME;
     let answer = match head(client, end)? {
         None => answer(
@@ -81,7 +88,7 @@ fn one(client: &mut TcpStream, media_type: &str, text: &Text) -> io::Result<()> 
             "text/plain",
             "too long\n",
         ),
-        Some(head) => respond(&head, media_type, text),
+        Some(head) => respond(&head, served),
     };
     let mut rest = answer.as_bytes();
     while !rest.is_empty() {
@@ -121,15 +128,20 @@ fn head(client: &mut TcpStream, end: Instant) -> io::Result<Option<Vec<u8>>> {
     Ok(None)
 }
 
-fn respond(head: &[u8], media_type: &str, text: &Text) -> String {
+fn respond(head: &[u8], served: &Served) -> String {
     let line = head.split(|&byte| byte == b'\r').next().unwrap_or_default();
     let line = String::from_utf8_lossy(line);
     let mut words = line.split(' ');
     let (method, target) = (words.next(), words.next().unwrap_or_default());
     let path = target.split('?').next();
     match (method, path) {
-        (Some("GET"), Some("/metrics")) => answer("200 OK", media_type, &text()),
-        (Some("GET"), _) => answer("404 Not Found", "text/plain", "see /metrics\n"),
+        (Some("GET"), Some(path)) if path == served.path => {
+            answer("200 OK", served.media_type, &(served.text)())
+        }
+        (Some("GET"), _) => {
+            let see = format!("see {}\n", served.path);
+            answer("404 Not Found", "text/plain", &see)
+        }
         _ => answer("405 Method Not Allowed", "text/plain", "only GET\n"),
     }
 }
@@ -147,7 +159,12 @@ mod tests {
 
     fn server() -> SocketAddr {
         let text: Text = Arc::new(|| "a 1\n# EOF\n".to_owned());
-        serve(SocketAddr::from(([127, 0, 0, 1], 0)), "text/x", text).unwrap()
+        let served = Served {
+            path: "/metrics",
+            media_type: "text/x",
+            text,
+        };
+        serve(SocketAddr::from(([127, 0, 0, 1], 0)), served).unwrap()
     }
 
     fn ask(address: SocketAddr, request: &[u8]) -> String {

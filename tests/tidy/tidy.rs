@@ -19,13 +19,14 @@ mod russian;
 mod waits;
 
 /// Folders of our crates, those that the workspace has as members.
-pub(crate) const CRATES: [&str; 28] = [
+pub(crate) const CRATES: [&str; 29] = [
     "bridge",
     "config",
     "converter",
     "ev3dev",
     "filters",
     "frame",
+    "grading",
     "journal",
     "lang/constraint",
     "lang/dataflow",
@@ -474,6 +475,7 @@ const EXHAUSTIVE: &[&str] = &[
     "bridge/src/lib.rs",
     "config/src/source.rs",
     "ev3dev/src/lib.rs",
+    "grading/src/lib.rs",
     "journal/src/lib.rs",
     "lang/constraint/src/lib.rs",
     "lang/dataflow/src/lib.rs",

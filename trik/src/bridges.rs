@@ -12,7 +12,7 @@ use crate::refusal::Refusal;
 use crate::remote::target::tree_of;
 use crate::up::session::signals;
 use ::bridge::follow::{Change, Follow};
-use ::bridge::http::serve;
+use ::bridge::http::{Served, serve};
 use ::bridge::prometheus::{MEDIA_TYPE, Numbers};
 use args::{Bridge, PrometheusArgs};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -55,7 +55,12 @@ fn prometheus(args: &PrometheusArgs) -> Result<u8, Refusal> {
         numbers.text(&of)
     };
     let address = SocketAddr::new(args.address, args.port);
-    let address = serve(address, MEDIA_TYPE, Arc::new(text)).map_err(refused)?;
+    let served = Served {
+        path: "/metrics",
+        media_type: MEDIA_TYPE,
+        text: Arc::new(text),
+    };
+    let address = serve(address, served).map_err(refused)?;
     say(&format!(
         "{}: http://{address}/metrics; Ctrl-C ends it\n",
         root.display()

@@ -8,6 +8,8 @@ mod args;
 mod class;
 mod confine;
 mod grade_args;
+#[cfg(feature = "nats")]
+pub(crate) mod grader;
 mod grades;
 mod jobs;
 mod live;
@@ -31,7 +33,9 @@ use crate::debug;
 use crate::output::{Output, settled, standard};
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
-pub(crate) use args::{CheckArgs, model_seconds};
+pub(crate) use args::{
+    CheckArgs, MEMORY_MIB, MODEL_SECONDS, WALL_SECONDS, memory, model_seconds, wall_seconds,
+};
 use grades::Grades;
 use jobs::Job;
 use lang_text::problem::Locale;

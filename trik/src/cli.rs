@@ -8,7 +8,8 @@ use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
 use crate::{
-    bridges, class, dap, debug, diagrams, fault, record, recording, remote, replay, site, task, up,
+    bridges, class, dap, debug, diagrams, fault, grade, record, recording, remote, replay, site,
+    task, up,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
@@ -262,6 +263,27 @@ enum Command {
     /// or an error of the program; 2 a solution is broken or could not be run or judged, a file could not be written, or
     /// the command line was not understood. With --for the exit status is that of the platform.
     Check(Box<check::CheckArgs>),
+    /// Judge submissions that come from a queue, beside any number of other workers.
+    ///
+    /// The queue is NATS JetStream. A submission is a file for a task of --tasks, and runs as with trik check; its result is told
+    /// once, whatever is killed meanwhile. One that cannot be judged is tried again, and put aside after the third time. Needs a
+    /// trik that was built with --features nats.
+    ///
+    /// Exit status: 0 you have ended it; 1 there are no tasks, or the sandbox lacks something that is demanded; 2 the server is
+    /// not reached, or the command line was not understood.
+    GradeWorker(Box<grade::args::WorkerArgs>),
+    /// Hand solutions in to the queue of trik grade-worker.
+    ///
+    /// Prints the id of each, and whether it is taken, waits already or is judged; with --wait its result. The same file for the
+    /// same task has the same id, and is judged once.
+    ///
+    /// Exit status: 0 all are handed in; with --wait as of trik check: 0 all tasks were accomplished, 1 one was not, 2 one could
+    /// not be judged or is not judged yet; 2 the server is not reached, or the command line was not understood.
+    GradeSubmit(grade::args::SubmitArgs),
+    /// Show how many submissions wait in the queue, are being judged, are judged, and are put aside.
+    ///
+    /// Exit status: 0 shown; 2 the server is not reached, or the command line was not understood.
+    GradeStatus(grade::args::StatusArgs),
     /// Debug a diagram or a data-flow program: stop, step, look, and go back.
     ///
     /// The program runs in a simulated world and is stopped before its first block. The words are those of gdb; help shows
@@ -382,6 +404,9 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::NewTask(args) => task::run(&args),
         Command::Site(args) => site::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::GradeWorker(args) => grade::work(&args),
+        Command::GradeSubmit(args) => grade::submit(&args),
+        Command::GradeStatus(args) => grade::status(&args),
         Command::Watch(args) => remote::watch::run(&args),
         Command::Info(args) => recording::info(&args),
         Command::Mend(args) => recording::mend_file(&args),

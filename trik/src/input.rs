@@ -2,6 +2,7 @@
 //!
 //! Owns what can keep a file from being read. What a person is told of it is said where the file is known.
 
+pub(crate) mod secret;
 pub(crate) mod words;
 
 use crate::limits;

@@ -22,6 +22,7 @@ mod diagrams;
 pub mod error;
 mod fault;
 pub mod fuzz;
+mod grade;
 mod input;
 mod language;
 pub mod limits;

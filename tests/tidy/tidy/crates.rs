@@ -7,7 +7,8 @@ use super::{CRATES, files, none, root};
 use crate::circles::LARGEST;
 
 /// Libraries that stand behind a border, and the only crates that may link them.
-const BEHIND_A_BORDER: [(&str, &[&str]); 10] = [
+const BEHIND_A_BORDER: [(&str, &[&str]); 11] = [
+    ("async-nats", &["grading"]),
     ("axum", &["page"]),
     ("box2d-rust", &["sim"]),
     ("clap", &["trik", "trikd", "trikfs", "trikfs-ev3dev"]),
@@ -16,7 +17,7 @@ const BEHIND_A_BORDER: [(&str, &[&str]); 10] = [
     ("libloading", &["trikfs"]),
     ("mlua-sys", &["config"]),
     ("rquickjs", &["trikd"]),
-    ("tokio", &["page", "trikd"]),
+    ("tokio", &["grading", "page", "trikd"]),
     ("zip", &["lang-diagram"]),
 ];
 
@@ -190,6 +191,7 @@ fn nothing_for_the_controller_links_what_is_for_a_pc() {
     }
     for name in [
         "bridge",
+        "grading",
         "sim",
         "trik",
         "lang-constraint",
@@ -201,6 +203,21 @@ fn nothing_for_the_controller_links_what_is_for_a_pc() {
     ] {
         assert!(!linked.contains(&name), "the controller links {name}");
     }
+}
+
+/// JSON is taken as values: decision 007. Crates of others may do as they like.
+#[test]
+fn nobody_derives_the_forms_of_json() {
+    let mut manifests = vec![root().join("Cargo.toml")];
+    manifests.extend(CRATES.map(|name| root().join(name).join("Cargo.toml")));
+    let mut asks = Vec::new();
+    for path in manifests {
+        let text = text(&path);
+        let lines = text.lines();
+        let found = lines.filter(|line| line.starts_with("serde") && line.contains("derive"));
+        asks.extend(found.map(|line| format!("{}: {line}", path.display())));
+    }
+    none(&asks);
 }
 
 /// The controller's programs are built together without default features, and one that asks for them asks for all.

@@ -5,13 +5,14 @@
 use super::{none, sources};
 
 /// Crates that are held to it.
-const NAMED: [&str; 26] = [
+const NAMED: [&str; 27] = [
     "bridge",
     "config",
     "converter",
     "ev3dev",
     "filters",
     "frame",
+    "grading",
     "journal",
     "lang/constraint",
     "lang/dataflow",

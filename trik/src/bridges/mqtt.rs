@@ -6,9 +6,7 @@
 use super::args::MqttArgs;
 use super::{PROGRAM, refused, root, say};
 use crate::error::Error;
-use crate::input;
-use crate::input::words::{A_FILE, no_text, why};
-use crate::limits;
+use crate::input::secret::{bytes, password};
 use crate::refusal::Refusal;
 use crate::remote::bridged::Programs;
 use crate::remote::target::target;
@@ -26,7 +24,7 @@ use ::bridge::mqtt::values::Values;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::fs;
 use std::os::fd::AsFd;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -265,15 +263,4 @@ fn tls(args: &MqttArgs) -> Result<Tls, Error> {
         authority: args.ca.as_deref().map(bytes).transpose()?,
         own,
     })
-}
-
-fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    let most = limits::SECRET_BYTES_MAX;
-    input::read(path, most).map_err(|unread| Error::file(path, why(&unread, most, A_FILE).english))
-}
-
-/// The first line of a file.
-fn password(path: &Path) -> Result<String, Error> {
-    let text = String::from_utf8(bytes(path)?).map_err(|_| Error::file(path, no_text().english))?;
-    Ok(text.lines().next().unwrap_or_default().to_owned())
 }

@@ -13,6 +13,13 @@ use lang_text::problem::Locale;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+/// Seconds of simulated time that a run may take.
+pub(crate) const MODEL_SECONDS: f64 = 600.0;
+/// Seconds of real time.
+pub(crate) const WALL_SECONDS: f64 = 60.0;
+/// Memory of one process.
+pub(crate) const MEMORY_MIB: u32 = 1024;
+
 /// Options of `trik check`.
 #[derive(Args, Clone, Debug)]
 #[command(group = ArgGroup::new("table").args(["out", "is_served"]).multiple(true))]
@@ -104,13 +111,13 @@ pub(crate) struct CheckArgs {
     #[arg(long)]
     pub marker_traces: bool,
     /// Longest run in seconds of simulated time, whatever the rules say.
-    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = model_seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = MODEL_SECONDS, value_parser = model_seconds)]
     pub time_limit: f64,
     /// Longest run in seconds of real time; a longer one counts as one that could not be run.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = wall_seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = WALL_SECONDS, value_parser = wall_seconds)]
     pub wall_limit: f64,
     /// Maximum memory of one process, in MiB.
-    #[arg(long, value_name = "MIB", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(64..=65536))]
+    #[arg(long, value_name = "MIB", default_value_t = MEMORY_MIB, value_parser = memory())]
     pub memory: u32,
     /// What programs in Python are confined by.
     #[command(flatten)]
@@ -133,6 +140,47 @@ pub(crate) struct CheckArgs {
 }
 
 impl CheckArgs {
+    /// Those of a command line that names nothing.
+    pub(super) fn plain() -> Self {
+        Self {
+            paths: Vec::new(),
+            diagram: None,
+            field: Vec::new(),
+            own: false,
+            task: None,
+            script: None,
+            explain: false,
+            is_debugging: false,
+            inputs: None,
+            gamepad: None,
+            log: Vec::new(),
+            recorded: Default::default(),
+            report: None,
+            trajectory: None,
+            svg: None,
+            html: None,
+            display: None,
+            results: None,
+            platform: None,
+            full_points: None,
+            grades: Default::default(),
+            marks: Default::default(),
+            force: false,
+            keep_going: false,
+            jobs: None,
+            marker_traces: false,
+            time_limit: MODEL_SECONDS,
+            wall_limit: WALL_SECONDS,
+            memory: MEMORY_MIB,
+            sandbox: Default::default(),
+            seed: 1,
+            language: Locale::English,
+            worker: false,
+            is_one: false,
+            is_embedded: false,
+        }
+    }
+
     /// The words with which a worker process is started that does such runs.
     pub(super) fn for_worker(&self) -> Vec<OsString> {
         let mut words: Vec<OsString> = vec!["check".into(), "--worker".into()];
@@ -187,7 +235,12 @@ pub(crate) fn model_seconds(text: &str) -> Result<f64, String> {
     seconds(text, limits::MODEL_SECONDS_MAX)
 }
 
-fn wall_seconds(text: &str) -> Result<f64, String> {
+/// Of one process, in MiB.
+pub(crate) fn memory() -> clap::builder::RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(64..=65536)
+}
+
+pub(crate) fn wall_seconds(text: &str) -> Result<f64, String> {
     seconds(text, limits::WALL_SECONDS_MAX)
 }
 

@@ -57,12 +57,14 @@ impl Column {
 }
 
 /// A task and its worlds; `None` is the world of the solution.
-#[derive(Debug)]
-struct Task {
-    name: String,
-    worlds: Vec<Option<PathBuf>>,
+#[derive(Clone, Debug)]
+pub(super) struct Task {
+    /// As its file or folder is called.
+    pub name: String,
+    /// At least one.
+    pub worlds: Vec<Option<PathBuf>>,
     /// The save that was given out, whose locks hold.
-    given: Option<PathBuf>,
+    pub given: Option<PathBuf>,
 }
 
 /// A solution, with the names on the way to it: folders, and the file without its ending.
@@ -224,7 +226,14 @@ impl Plan {
 }
 
 /// The tasks of a folder: `NAME.xml` and folders of such files are fields, `NAME.qrs` is what was given out.
-fn tasks(folder: &Path, args: &CheckArgs, passed: &mut Passed) -> Result<Vec<Task>, Error> {
+///
+/// # Errors
+/// There are none, or too many, or the folder cannot be read.
+pub(super) fn tasks(
+    folder: &Path,
+    args: &CheckArgs,
+    passed: &mut Passed,
+) -> Result<Vec<Task>, Error> {
     let failed = |error: std::io::Error| walk::unread(folder, error, args.language);
     let mut all: BTreeMap<String, Task> = BTreeMap::new();
     let mut saves = Vec::new();

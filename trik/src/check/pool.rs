@@ -147,18 +147,11 @@ fn in_order(
 
 /// Takes runs for one process until there are none.
 fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usize, Row)>) {
-    let words = args.for_worker();
-    let mut worker = None;
+    let mut slot = Slot::new(args);
     while let Some(index) = shared.take(jobs.len()) {
         let job = &jobs[index];
-        let row = done(&mut worker, job, &words, args).unwrap_or_else(|why| {
-            // Whatever it was, the next run gets a fresh process.
-            worker = None;
-            let mut row = Row::broken(
-                shown(job.judged(args)),
-                job.rules(args).map(shown),
-                why.to_string(),
-            );
+        let row = slot.row(job, args).unwrap_or_else(|why| {
+            let mut row = broken(job, args, &why);
             let said = row.messages.clone();
             report(job, args, &mut row, &said);
             row
@@ -169,22 +162,54 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
     }
 }
 
-fn done(
-    worker: &mut Option<Worker>,
-    job: &Job,
-    words: &[OsString],
-    args: &CheckArgs,
-) -> Result<Row, Error> {
-    let worker = match worker {
-        Some(worker) => worker,
-        None => {
-            let fresh = Worker::start(words).map_err(|error| Error::system("no process", error))?;
-            worker.insert(fresh)
+/// A run that its process has not done.
+pub(super) fn broken(job: &Job, args: &CheckArgs, why: &Error) -> Row {
+    let rules = job.rules(args).map(shown);
+    Row::broken(shown(job.judged(args)), rules, why.to_string())
+}
+
+/// Does one run after another in a process, and starts another one when that has died.
+pub(super) struct Slot {
+    worker: Option<Worker>,
+    words: Vec<OsString>,
+}
+
+impl Slot {
+    /// For runs with these options.
+    pub fn new(args: &CheckArgs) -> Self {
+        Self {
+            worker: None,
+            words: args.for_worker(),
         }
-    };
-    let line = worker.ask(job, args)?;
-    Row::read(&line)
-        .ok_or_else(|| Error::Process("the process that ran it said something strange".to_owned()))
+    }
+
+    /// Does a run.
+    ///
+    /// # Errors
+    /// Its process cannot be started, has died, or has said nothing in time.
+    pub fn row(&mut self, job: &Job, args: &CheckArgs) -> Result<Row, Error> {
+        let done = self.done(job, args);
+        if done.is_err() {
+            // Whatever it was, the next run gets a fresh process.
+            self.worker = None;
+        }
+        done
+    }
+
+    fn done(&mut self, job: &Job, args: &CheckArgs) -> Result<Row, Error> {
+        let worker = match &mut self.worker {
+            Some(worker) => worker,
+            worker => {
+                let fresh = Worker::start(&self.words);
+                let fresh = fresh.map_err(|error| Error::system("no process", error))?;
+                worker.insert(fresh)
+            }
+        };
+        let line = worker.ask(job, args)?;
+        let strange =
+            || Error::Process("the process that ran it said something strange".to_owned());
+        Row::read(&line).ok_or_else(strange)
+    }
 }
 
 /// A process that does runs. Dropping it kills it.

@@ -32,6 +32,9 @@ mod ev3dev;
 mod examples;
 /// Devices that fail on purpose.
 mod faults;
+/// Submissions in a queue.
+#[cfg(feature = "nats")]
+mod grade;
 /// Speed that is held, heading and place.
 mod hold;
 /// What editors are told of models.

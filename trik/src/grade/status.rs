@@ -1,0 +1,99 @@
+//! `trik grade-status`: how much is where in the queue, as lines or as a page.
+//!
+//! Owns both forms.
+
+use super::args::StatusArgs;
+use super::way::with;
+use crate::error::Error;
+use crate::output::standard;
+use crate::refusal::Refusal;
+use bridge::http::{Served, serve};
+use grading::{Ends, State, watch};
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+/// Tells it.
+///
+/// # Errors
+/// The server is not reached, or nobody can listen there.
+pub fn status(args: &StatusArgs) -> Result<u8, Refusal> {
+    with(&args.server, "grade-status", async |queue| {
+        let state = queue.state().await?;
+        if !args.page {
+            standard(lines(state).as_bytes())?;
+            return Ok(0);
+        }
+        let mut ends = Ends::new()?;
+        let shown = Arc::new(Mutex::new(page(state, None, true)));
+        let text = shown.clone();
+        let address = SocketAddr::new(args.address, args.port);
+        let served = Served {
+            path: "/",
+            media_type: "text/html; charset=utf-8",
+            text: Arc::new(move || text.lock().unwrap_or_else(PoisonError::into_inner).clone()),
+        };
+        let address = serve(address, served).map_err(|why| Error::Refused(why.to_string()))?;
+        standard(
+            format!("the queue, in a browser: http://{address}/\nCtrl-C ends it\n").as_bytes(),
+        )?;
+        let (mut last, mut at) = (state, Instant::now());
+        let tell = |now: Option<State>| {
+            let text = match now {
+                Some(now) => {
+                    let seconds = at.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
+                    let rate = now.judged.saturating_sub(last.judged) as f64 / seconds;
+                    (last, at) = (now, Instant::now());
+                    page(now, Some(rate), true)
+                }
+                None => page(last, None, false),
+            };
+            *shown.lock().unwrap_or_else(PoisonError::into_inner) = text;
+        };
+        watch(&queue, &mut ends, tell).await;
+        Ok(0)
+    })
+}
+
+/// What is where, with words for it.
+fn rows(state: State) -> [(&'static str, u64); 4] {
+    let State {
+        waiting,
+        taken,
+        judged,
+        dead,
+    } = state;
+    [
+        ("waiting", waiting),
+        ("being judged", taken),
+        ("judged", judged),
+        ("put aside", dead),
+    ]
+}
+
+fn lines(state: State) -> String {
+    let rows = rows(state).into_iter();
+    rows.map(|(name, count)| format!("{name:<13} {count}\n"))
+        .collect()
+}
+
+fn page(state: State, rate: Option<f64>, is_there: bool) -> String {
+    let rows: String = rows(state)
+        .into_iter()
+        .map(|(name, count)| format!("<tr><th scope=\"row\">{name}</th><td>{count}</td></tr>"))
+        .collect();
+    let rate = rate.map_or_else(String::new, |rate| {
+        format!("<p>{rate:.1} judged a second</p>")
+    });
+    let gone = match is_there {
+        true => "",
+        false => "<p role=\"alert\">The server does not answer; this is the last that it said.</p>",
+    };
+    format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\">\
+         <meta name=\"viewport\" content=\"width=device-width\"><title>TRIK queue</title>\
+         <style>:root{{color-scheme:light dark;font-family:system-ui}}th{{text-align:left;padding-right:2rem}}\
+         td{{text-align:right;font-variant-numeric:tabular-nums}}</style>\
+         <main><h1>Queue</h1>{gone}<table>{rows}</table>{rate}</main></html>"
+    )
+}
