@@ -1,0 +1,151 @@
+//! How many submissions of a queue workers judge, beside `trik check` with as many processes and the same files.
+//!
+//! `cargo bench -p trik --features nats --bench queue` where `nats-server` is installed; `QUEUE_COUNT` is how many submissions each
+//! round has (1000). The server and the commands that hand in and look have to share the processors with the workers, so two workers
+//! on two cores say what such a computer does, and not what a worker is worth on its own.
+
+use std::fs;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const TRIK: &str = env!("CARGO_BIN_EXE_trik");
+const SERVER: &str = "nats-server";
+/// How many workers, each with one process.
+const WORKERS: [usize; 3] = [1, 2, 4];
+const LOOK_TIME: Duration = Duration::from_millis(100);
+/// The least share of `trik check` that each worker shall have.
+const GOAL: f64 = 0.9;
+
+/// A process that is killed with the round.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A folder with a task, a server and its address.
+struct Place {
+    folder: PathBuf,
+    address: String,
+    _server: Running,
+}
+
+impl Place {
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(TRIK);
+        command.current_dir(&self.folder).args(words);
+        command.stdin(Stdio::null()).stdout(Stdio::null());
+        command.stderr(Stdio::null());
+        if words[0].starts_with("grade-") {
+            command.args(["--server", &self.address]);
+        }
+        command
+    }
+
+    /// Programs that are like no others, in a folder of their own.
+    fn files(&self, round: usize, count: usize) -> Vec<String> {
+        let text = fs::read_to_string(self.folder.join("made/solution.js")).expect("a program");
+        let folder = format!("round{round}");
+        fs::create_dir(self.folder.join(&folder)).expect("a folder");
+        let file = |number: usize| {
+            let name = format!("{folder}/{number}.js");
+            let text = format!("{text}\n// {round} {number}\n");
+            fs::write(self.folder.join(&name), text).expect("written");
+            name
+        };
+        (0..count).map(file).collect()
+    }
+
+    /// How many are judged.
+    fn judged(&self) -> usize {
+        let mut command = self.command(&["grade-status"]);
+        let output = command.stdout(Stdio::piped()).output().expect("trik");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let line = text.lines().find(|line| line.starts_with("judged"));
+        let count = line.and_then(|line| line.rsplit(' ').next()?.parse().ok());
+        count.expect("a count")
+    }
+}
+
+fn place(folder: &Path) -> Option<Place> {
+    let free = TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr());
+    let port = free.expect("a port").port();
+    let server = Command::new(SERVER)
+        .args(["--jetstream", "--store_dir", "kept", "-a", "127.0.0.1"])
+        .args(["-p", &port.to_string()])
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .ok()?;
+    let server = Running(server);
+    let address = format!("127.0.0.1:{port}");
+    while TcpStream::connect(&address).is_err() {
+        std::thread::sleep(LOOK_TIME);
+    }
+    let place = Place {
+        folder: folder.to_owned(),
+        address,
+        _server: server,
+    };
+    let made = place.command(&["new-task", "made"]).status();
+    assert!(made.expect("trik").success());
+    fs::create_dir(folder.join("tasks")).expect("a folder");
+    fs::copy(folder.join("made/world.xml"), folder.join("tasks/road.xml")).expect("a task");
+    Some(place)
+}
+
+fn main() {
+    let count = std::env::var("QUEUE_COUNT").ok();
+    let count = count.map_or(1000, |text| text.parse().expect("QUEUE_COUNT is a number"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let Some(place) = place(folder.path()) else {
+        println!("there is no {SERVER}: nothing is measured");
+        return;
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    for (round, workers) in WORKERS.into_iter().enumerate() {
+        let files = place.files(round, count);
+        let jobs = workers.min(cores).to_string();
+        let begin = Instant::now();
+        let words = [
+            &format!("round{round}"),
+            "--field",
+            "tasks/road.xml",
+            "--jobs",
+            &jobs,
+        ];
+        let done = place.command(&[&["check"], &words[..]].concat()).status();
+        assert!(done.expect("trik").success());
+        let alone_s = begin.elapsed().as_secs_f64();
+
+        let words = ["grade-submit", "--task", "road"];
+        let files: Vec<&str> = files.iter().map(String::as_str).collect();
+        let (begin, before) = (Instant::now(), place.judged());
+        let sent = place.command(&[&words[..], &files].concat()).status();
+        assert!(sent.expect("trik").success());
+        let sent_s = begin.elapsed().as_secs_f64();
+        let begin = Instant::now();
+        let words = ["grade-worker", "--tasks", "tasks", "--jobs", "1"];
+        let start = |_| Running(place.command(&words).spawn().expect("trik"));
+        let running: Vec<Running> = (0..workers).map(start).collect();
+        while place.judged() < before + count {
+            std::thread::sleep(LOOK_TIME);
+        }
+        let queue_s = begin.elapsed().as_secs_f64();
+        drop(running);
+        let rate = |seconds: f64| count as f64 / seconds;
+        println!(
+            "{workers} workers: {:.0} a second, {:.2} of trik check --jobs {jobs} ({:.0} a second), goal {GOAL}; handed in {:.0} a second",
+            rate(queue_s),
+            alone_s / queue_s,
+            rate(alone_s),
+            rate(sent_s),
+        );
+    }
+}
