@@ -23,6 +23,8 @@ pub enum Error {
     Reach(String, String),
     /// The server has no JetStream, or not the rights for it.
     Streams(String),
+    /// A stream of this name is there that was not made by this program.
+    Foreign(&'static str),
     /// The server does not answer, or refuses: what was asked, and what it says.
     Asked(&'static str, String),
     /// A header that a submission must have is missing.
@@ -40,7 +42,9 @@ impl Error {
     pub fn blame(&self) -> Blame {
         match self {
             Self::NoHeader(_) | Self::Name(_) | Self::TooLarge(..) => Blame::Caller,
-            Self::Reach(..) | Self::Streams(_) | Self::Asked(..) => Blame::Server,
+            Self::Reach(..) | Self::Streams(_) | Self::Foreign(_) | Self::Asked(..) => {
+                Blame::Server
+            }
             Self::Machine(_) => Blame::Machine,
         }
     }
@@ -56,6 +60,11 @@ impl fmt::Display for Error {
             Self::Streams(why) => write!(
                 f,
                 "the server keeps no streams: {why}; start it with JetStream (nats-server --jetstream --store_dir DIR)"
+            ),
+            Self::Foreign(name) => write!(
+                f,
+                "the server has a stream {name} that was made in another way, so submissions could be lost or judged twice: \
+                 delete it, or use another server"
             ),
             Self::Asked(what, why) => write!(f, "{what}: the server says: {why}"),
             Self::NoHeader(name) => write!(f, "the submission has no header {name}"),

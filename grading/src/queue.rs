@@ -112,17 +112,25 @@ impl Queue {
             .timeout(ANSWER_TIME)
             .ack_timeout(ANSWER_TIME)
             .build(client.clone());
-        let stream = async |name: &str, subject: &str, retention| {
+        let stream = async |name: &'static str, subject: &str, retention| {
             let config = Config {
                 name: name.to_owned(),
                 subjects: vec![format!("{subject}*")],
                 retention,
                 max_messages_per_subject: 1,
                 discard: DiscardPolicy::New,
+                discard_new_per_subject: true,
                 ..Config::default()
             };
             let stream = context.get_or_create_stream(config).await;
-            stream.map_err(|why| Error::Streams(why.to_string()))
+            let stream = stream.map_err(|why| Error::Streams(why.to_string()))?;
+            // One that somebody else has made would give things twice, or keep what is done.
+            let has = &stream.cached_info().config;
+            let is_ours = has.retention == retention && has.discard_new_per_subject;
+            match is_ours {
+                true => Ok(stream),
+                false => Err(Error::Foreign(name)),
+            }
         };
         Ok(Self {
             submissions: stream(SUBMISSIONS, SUBMIT, RetentionPolicy::WorkQueue).await?,
