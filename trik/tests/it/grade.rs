@@ -250,6 +250,14 @@ fn what_nobody_can_judge_is_put_aside_after_three_times_and_told() {
     ]);
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("this worker has no task 'sea'"), "{text}");
+    // Where a worker has it is not told.
+    server.place.file("none.qrs", "");
+    let (code, text) = server.trik(&["grade-submit", "none.qrs", "--task", "road", "--wait"]);
+    assert_eq!(
+        (code, text.contains("\"message\":\"none.qrs: ")),
+        (2, true),
+        "{text}"
+    );
     // What is no solution is judged as such, at once.
     let (code, text) = server.trik(&["grade-submit", "made/README.md", "--task", "road", "--wait"]);
     assert_eq!(
@@ -257,7 +265,7 @@ fn what_nobody_can_judge_is_put_aside_after_three_times_and_told() {
         (2, true),
         "{text}"
     );
-    assert_eq!(server.state(), Some([0, 0, 3, 2]));
+    assert_eq!(server.state(), Some([0, 0, 4, 2]));
     // And it goes on.
     let (code, _) = server.trik(&[
         "grade-submit",
