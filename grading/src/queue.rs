@@ -39,9 +39,9 @@ pub struct State {
     pub waiting: u64,
     /// Submissions that a worker has.
     pub taken: u64,
-    /// Submissions with a result.
+    /// Submissions that were judged.
     pub judged: u64,
-    /// Of these, those that nobody could judge.
+    /// Submissions that nobody could judge.
     pub dead: u64,
 }
 
@@ -141,14 +141,19 @@ impl Queue {
         })
     }
 
-    /// Hands a submission in.
+    /// Hands a submission in; one that was put aside is judged anew.
     ///
     /// # Errors
     /// It is too large for the server, or that does not answer.
     pub async fn submit(&self, submission: &Submission) -> Result<Receipt, Error> {
         let id = submission.id();
-        if self.result(&id).await?.is_some() {
-            return Ok(Receipt::Judged);
+        if let Some(result) = self.result(&id).await? {
+            if !is_dead(&result) {
+                return Ok(Receipt::Judged);
+            }
+            // Nobody could judge it, and somebody wants to know whether that is still so.
+            forget(&self.dead, &format!("{DEAD}{id}")).await?;
+            forget(&self.results, &format!("{RESULT}{id}")).await?;
         }
         let bytes = submission.bytes().to_vec();
         let is_new = self.put(SUBMIT, &id, submission.headers(), bytes).await?;
@@ -192,11 +197,12 @@ impl Queue {
             // There never was a worker, so nobody has one.
             Err(_) => (all, 0),
         };
+        let dead = count(&self.dead).await?;
         Ok(State {
             waiting,
             taken,
-            judged: count(&self.results).await?,
-            dead: count(&self.dead).await?,
+            judged: count(&self.results).await?.saturating_sub(dead),
+            dead,
         })
     }
 
@@ -283,6 +289,25 @@ impl Queue {
                 | PublishErrorKind::Other => Err(asked("a message", why)),
             },
         }
+    }
+}
+
+/// Whether a result is that of a submission which was put aside.
+fn is_dead(result: &str) -> bool {
+    let result = serde_json::from_str::<serde_json::Value>(result);
+    result.is_ok_and(|result| !result["dead"].is_null())
+}
+
+/// Takes what a stream has of a subject away, if there is something.
+async fn forget(stream: &Stream, subject: &str) -> Result<(), Error> {
+    match stream.get_last_raw_message_by_subject(subject).await {
+        Ok(message) => {
+            let gone = stream.delete_message(message.sequence).await;
+            gone.map(drop)
+                .map_err(|why| asked("what was put aside", why))
+        }
+        Err(why) if why.kind() == LastRawMessageErrorKind::NoMessageFound => Ok(()),
+        Err(why) => Err(asked("what was put aside", why)),
     }
 }
 

@@ -275,10 +275,11 @@ enum Command {
     /// Hand solutions in to the queue of trik grade-worker.
     ///
     /// Prints the id of each, and whether it is taken, waits already or is judged; with --wait its result. The same file for the
-    /// same task has the same id, and is judged once.
+    /// same task has the same id, and is judged once; one that was put aside is judged anew.
     ///
     /// Exit status: 0 all are handed in; with --wait as of trik check: 0 all tasks were accomplished, 1 one was not, 2 one could
-    /// not be judged or is not judged yet; 2 the server is not reached, or the command line was not understood.
+    /// not be judged or is not judged yet; 2 a file cannot be handed in, the server is not reached, or the command line was not
+    /// understood.
     GradeSubmit(grade::args::SubmitArgs),
     /// Show how many submissions wait in the queue, are being judged, are judged, and are put aside.
     ///

@@ -13,8 +13,9 @@ use crate::terminal::named;
 use grading::queue::Receipt;
 use grading::{Ends, Submission, Waiter, limits};
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
+use std::fmt::Display;
 use std::path::Path;
 use std::time::Duration;
 
@@ -31,14 +32,14 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
         // Before anything is handed in, so that none is missed.
         let waiter = Waiter::new(&queue).await?;
         let mut ends = Ends::new()?;
-        let mut missing = BTreeSet::new();
+        let mut missing: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
         for (file, submission) in &all {
             let receipt = queue.submit(submission).await;
             let receipt = receipt.map_err(|why| {
-                let refusal = Refusal::from(why);
+                let line = format!("trik: {}: {why}", named(file));
                 Refusal {
-                    lines: vec![format!("{}: {}", named(file), refusal.lines.join(" "))],
-                    ..refusal
+                    lines: vec![line],
+                    code: UNREADABLE,
                 }
             })?;
             let id = submission.id();
@@ -50,7 +51,7 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
                 };
                 standard(format!("{id} {word} {}\n", named(file)).as_bytes())?;
             }
-            missing.insert(id);
+            missing.entry(id).or_default().push(file);
         }
         if !args.wait {
             return Ok(0);
@@ -59,11 +60,12 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
             .timeout
             .map(|seconds| Duration::from_secs(seconds.into()));
         let mut code = 0;
+        let ids: BTreeSet<String> = missing.keys().cloned().collect();
         let told = |result: &str| {
-            code = code.max(tell(result)?);
+            code = code.max(tell(result, &missing)?);
             Ok::<(), Refusal>(())
         };
-        match waiter.wait(missing, patience, &mut ends, told).await? {
+        match waiter.wait(ids, patience, &mut ends, told).await? {
             0 => Ok(code),
             count => Err(unfinished(count)),
         }
@@ -74,20 +76,37 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
 fn read(path: &Path, args: &SubmitArgs) -> Result<Submission, Refusal> {
     let most = limits::SUBMISSION_BYTES_MAX as u64;
     let bytes = input::read(path, most)
-        .map_err(|unread| Error::file(path, why(&unread, most, A_FILE).english))?;
+        .map_err(|unread| refused(path, why(&unread, most, A_FILE).english))?;
     let text = |name: Option<&OsStr>| name.map(|name| name.to_string_lossy().into_owned());
     let name = text(path.file_name()).unwrap_or_default();
     let stem = text(path.file_stem()).unwrap_or_default();
     let task = args.task.as_deref().unwrap_or(&stem);
-    Submission::new(task, &name, bytes).map_err(|why| Error::file(path, why).into())
+    let ending = path.extension().and_then(OsStr::to_str);
+    if !matches!(ending, Some("qrs" | "flow" | "js" | "py")) {
+        let why = "it is no solution: a name ends with .qrs, .flow, .js or .py";
+        return Err(refused(path, why));
+    }
+    Submission::new(task, &name, bytes).map_err(|why| refused(path, why))
 }
 
-/// Prints a result; the exit status that it has.
-fn tell(result: &str) -> Result<u8, Refusal> {
-    standard(format!("{result}\n").as_bytes())?;
-    let Ok(result) = serde_json::from_str::<Value>(result) else {
+/// A file that cannot be handed in.
+fn refused(path: &Path, why: impl Display) -> Refusal {
+    Refusal {
+        code: UNREADABLE,
+        ..Error::file(path, why).into()
+    }
+}
+
+/// Prints a result, once for each file that it is of; the exit status that it has.
+fn tell(result: &str, files: &BTreeMap<String, Vec<&Path>>) -> Result<u8, Refusal> {
+    let Ok(mut result) = serde_json::from_str::<Value>(result) else {
         return Ok(UNREADABLE);
     };
+    let of = result["id"].as_str().and_then(|id| files.get(id));
+    for path in of.into_iter().flatten() {
+        result["path"] = path.to_string_lossy().into();
+        standard(format!("{result}\n").as_bytes())?;
+    }
     let runs = result["runs"].as_array().map_or(&[][..], Vec::as_slice);
     let code = |run: &Value| match run["verdict"].as_str() {
         Some("accomplished" | "ended") => 0,
@@ -105,7 +124,7 @@ fn unfinished(count: usize) -> Refusal {
     Refusal {
         code: UNREADABLE,
         ..Refusal::new(format!(
-            "{count} are not judged yet; they stay in the queue, and the same command shows their results"
+            "not judged yet: {count}; they stay in the queue, and the same command shows their results"
         ))
     }
 }

@@ -258,14 +258,25 @@ fn what_nobody_can_judge_is_put_aside_after_three_times_and_told() {
         (2, true),
         "{text}"
     );
-    // What is no solution is judged as such, at once.
-    let (code, text) = server.trik(&["grade-submit", "made/README.md", "--task", "road", "--wait"]);
-    assert_eq!(
-        (code, text.contains("it is no solution")),
-        (2, true),
-        "{text}"
-    );
-    assert_eq!(server.state(), Some([0, 0, 4, 2]));
+    // What is no solution is not taken.
+    let (code, _) = server.trik(&["grade-submit", "made/README.md", "--task", "road"]);
+    assert_eq!((code, server.state()), (2, Some([0, 0, 1, 2])));
+    // What was put aside is judged anew when it is handed in once more, by a worker that has the task.
+    let tasks = server.place.path("tasks");
+    fs::copy(tasks.join("road.xml"), tasks.join("sea.xml")).unwrap();
+    drop(worker);
+    let _worker = Running::new(&mut server.command(&["grade-worker", "--tasks", "tasks"]));
+    let again = [
+        "grade-submit",
+        "made/solution.js",
+        "--task",
+        "sea",
+        "--wait",
+    ];
+    let (code, text) = server.trik(&again);
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("\"path\":\"made/solution.js\""), "{text}");
+    assert_eq!(server.state(), Some([0, 0, 2, 1]));
     // And it goes on.
     let (code, _) = server.trik(&[
         "grade-submit",
