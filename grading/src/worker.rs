@@ -141,7 +141,7 @@ pub async fn serve(
     Ok(())
 }
 
-/// Begins to work at so many submissions as there are places; how many have come.
+/// Takes as many submissions as there are free places, and says how many have come.
 async fn round(
     crew: &Arc<Crew>,
     consumer: &PullConsumer,
@@ -218,7 +218,7 @@ async fn dispose(crew: &Crew, message: &Message) -> Result<(), Error> {
         (crew.tell)(News::Again(id));
         return Ok(());
     }
-    // Who has taken it before has not said what became of it: it was killed each time.
+    // Each worker that has taken it was killed before it said what became of it.
     let attempt = message.info().map_or(1, |info| info.delivered);
     if attempt > ATTEMPTS_MAX {
         let why =
