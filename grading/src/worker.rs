@@ -268,7 +268,7 @@ async fn bury(
     why: &str,
     runs: &[Value],
 ) -> Result<(), Error> {
-    // What is no submission is known by the end of its subject.
+    // What is no submission is known by the hash of its payload.
     let id = match submission {
         Some(submission) => submission.id(),
         None => id_of_rubbish(message),

@@ -16,7 +16,7 @@ use axum::response::{IntoResponse, Response};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-/// First parts of paths that need it.
+/// First parts of paths that need the cookie.
 const DATA: &[&str] = &["socket", "replay"];
 
 /// Serves what `routes` makes within the runtime, and the page at these paths, to the first of which the root leads. So many threads
