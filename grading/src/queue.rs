@@ -1,23 +1,25 @@
 //! The server: its streams, what is put into them, and what can be asked.
 //!
 //! Owns the connection, which comes back by itself, and that nothing is in a stream twice: each message is the first of its subject,
-//! or the server refuses it.
+//! or the server refuses it. What a stream keeps is read by `kept` alone.
 
 use crate::error::Error;
-use crate::limits::{ACK_TIME, ANSWER_TIME, REACH_TIME, TAKEN_MAX};
-use crate::names::{DEAD, DEAD_LETTERS, RESULT, RESULTS, SUBMISSIONS, SUBMIT, WHY, WORKERS};
+use crate::kept::{Kept, Which, fields, kept};
+use crate::limits::{ACK_TIME, ANSWER_TIME, REACH_TIME, SHOWN_MAX, TAKEN_MAX};
+use crate::names::{
+    DEAD, DEAD_LETTERS, FILE, RESULT, RESULTS, SUBMISSIONS, SUBMIT, TASK, WHY, WORKERS,
+};
+use crate::outcome::Outcome;
 use crate::submission::Submission;
 use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
 use async_nats::jetstream::context::PublishErrorKind;
 use async_nats::jetstream::message::PublishMessage;
-use async_nats::jetstream::stream::{
-    Config, DiscardPolicy, LastRawMessageErrorKind, RetentionPolicy, Stream,
-};
+use async_nats::jetstream::stream::{Config, DiscardPolicy, RetentionPolicy, Stream};
 use async_nats::jetstream::{Context, context};
 use async_nats::{Client, ConnectOptions, Event, HeaderMap, Subscriber};
-use std::fmt::Display;
 use std::path::PathBuf;
 use std::sync::Arc;
+use tokio::sync::watch;
 
 /// Where the server is, and who asks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -52,8 +54,30 @@ pub enum Receipt {
     Taken,
     /// It was there already, and waits.
     Waits,
+    /// Something that is not this submission is in its place; a worker puts that aside.
+    Blocked,
     /// It was judged before.
     Judged,
+}
+
+/// A submission that was put aside, for a person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeadLetter {
+    /// Its id.
+    pub id: String,
+    /// The task and the file; None: it was no submission.
+    pub what: Option<(String, String)>,
+    /// Why nobody could judge it.
+    pub why: String,
+}
+
+/// Which submissions workers have been given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Progress {
+    /// All up to this one are done.
+    pub done: u64,
+    /// None after this one was given to anybody.
+    pub last: u64,
 }
 
 /// The way to a server.
@@ -64,6 +88,7 @@ pub struct Queue {
     submissions: Stream,
     results: Stream,
     dead: Stream,
+    losses: watch::Receiver<u32>,
 }
 
 impl Queue {
@@ -75,39 +100,7 @@ impl Queue {
         settings: &Settings,
         tell: impl Fn(bool) + Send + Sync + 'static,
     ) -> Result<Self, Error> {
-        let tell = Arc::new(tell);
-        let mut options = ConnectOptions::new()
-            .name(&settings.name)
-            .request_timeout(Some(ANSWER_TIME))
-            .reconnect_delay_callback(|_| REACH_TIME)
-            .event_callback(move |event| {
-                let is_there = match event {
-                    Event::Connected => Some(true),
-                    Event::Disconnected => Some(false),
-                    Event::LameDuckMode
-                    | Event::Draining
-                    | Event::Closed
-                    | Event::SlowConsumer(_)
-                    | Event::ServerError(_)
-                    | Event::ClientError(_) => None,
-                };
-                let tell = tell.clone();
-                async move {
-                    if let Some(is_there) = is_there {
-                        tell(is_there);
-                    }
-                }
-            });
-        if let Some((user, password)) = &settings.login {
-            options = options.user_and_password(user.clone(), password.clone());
-        }
-        if let Some(path) = &settings.authority {
-            options = options.add_root_certificates(path.clone());
-        }
-        let servers: Vec<&str> = settings.server.split(',').map(str::trim).collect();
-        let client = options.connect(&servers[..]).await;
-        let client =
-            client.map_err(|why| Error::Reach(settings.server.clone(), why.to_string()))?;
+        let (client, losses) = connect(settings, tell).await?;
         let context = context::ContextBuilder::new()
             .timeout(ANSWER_TIME)
             .ack_timeout(ANSWER_TIME)
@@ -126,7 +119,11 @@ impl Queue {
             let stream = stream.map_err(|why| Error::Streams(why.to_string()))?;
             // One that somebody else has made would give things twice, or keep what is done.
             let has = &stream.cached_info().config;
-            let is_ours = has.retention == retention && has.discard_new_per_subject;
+            let is_ours = has.retention == retention
+                && has.discard == DiscardPolicy::New
+                && has.discard_new_per_subject
+                && has.max_messages_per_subject == 1
+                && has.subjects == [format!("{subject}*")];
             match is_ours {
                 true => Ok(stream),
                 false => Err(Error::Foreign(name)),
@@ -138,7 +135,13 @@ impl Queue {
             dead: stream(DEAD_LETTERS, DEAD, RetentionPolicy::Limits).await?,
             client,
             context,
+            losses,
         })
+    }
+
+    /// How often the connection was lost.
+    pub(crate) fn losses(&self) -> watch::Receiver<u32> {
+        self.losses.clone()
     }
 
     /// Hands a submission in; one that was put aside is judged anew.
@@ -147,33 +150,46 @@ impl Queue {
     /// It is too large for the server, or that does not answer.
     pub async fn submit(&self, submission: &Submission) -> Result<Receipt, Error> {
         let id = submission.id();
-        if let Some(result) = self.result(&id).await? {
-            if !is_dead(&result) {
-                return Ok(Receipt::Judged);
+        match self.result(&id).await? {
+            Some(Ok(result)) if result.dead().is_none() => return Ok(Receipt::Judged),
+            // Nobody could judge it, and somebody wants to know whether that is still so. Or it is no result at all.
+            Some(_) => {
+                self.forget(&self.dead, &format!("{DEAD}{id}")).await?;
+                self.forget_result(&id).await?;
             }
-            // Nobody could judge it, and somebody wants to know whether that is still so.
-            forget(&self.dead, &format!("{DEAD}{id}")).await?;
-            forget(&self.results, &format!("{RESULT}{id}")).await?;
+            None => {}
         }
-        let bytes = submission.bytes().to_vec();
-        let is_new = self.put(SUBMIT, &id, submission.headers(), bytes).await?;
-        Ok(match is_new {
-            true => Receipt::Taken,
-            false => Receipt::Waits,
+        if self.put_submission(submission).await? {
+            return Ok(Receipt::Taken);
+        }
+        let newest = format!("{SUBMIT}{id}");
+        let there = kept(&self.context, SUBMISSIONS, Which::Newest(&newest)).await?;
+        Ok(match there.map(|there| Submission::kept(&there)) {
+            Some(Err(_)) => Receipt::Blocked,
+            // Without one it was judged meanwhile.
+            Some(Ok(_)) | None => Receipt::Waits,
         })
     }
 
-    /// The result of a submission, if it is there.
+    /// Hands a submission in. False: its place is not free.
+    pub(crate) async fn put_submission(&self, submission: &Submission) -> Result<bool, Error> {
+        let (id, bytes) = (submission.id(), submission.bytes().to_vec());
+        self.put(SUBMIT, &id, submission.headers(), bytes).await
+    }
+
+    /// What stands as the result of a submission, if there is something: its result, or why it is none.
     ///
     /// # Errors
     /// The server does not answer.
-    pub async fn result(&self, id: &str) -> Result<Option<String>, Error> {
+    pub async fn result(&self, id: &str) -> Result<Option<Result<Outcome, Error>>, Error> {
         let subject = format!("{RESULT}{id}");
-        match self.results.get_last_raw_message_by_subject(&subject).await {
-            Ok(message) => Ok(Some(String::from_utf8_lossy(&message.payload).into_owned())),
-            Err(why) if why.kind() == LastRawMessageErrorKind::NoMessageFound => Ok(None),
-            Err(why) => Err(asked("the result", why)),
-        }
+        let there = kept(&self.context, RESULTS, Which::Newest(&subject)).await?;
+        Ok(there.map(|there| Outcome::read(id, &there.bytes)))
+    }
+
+    /// Takes away what stands as the result of a submission.
+    pub(crate) async fn forget_result(&self, id: &str) -> Result<(), Error> {
+        self.forget(&self.results, &format!("{RESULT}{id}")).await
     }
 
     /// Results as they come. Some are missing after the connection was lost: [`Queue::result`] has them.
@@ -182,7 +198,7 @@ impl Queue {
     /// The connection is closed.
     pub async fn results(&self) -> Result<Subscriber, Error> {
         let all = self.client.subscribe(format!("{RESULT}*")).await;
-        all.map_err(|why| asked("results", why))
+        all.map_err(|why| Error::asked("results", why))
     }
 
     /// How much is where.
@@ -206,12 +222,65 @@ impl Queue {
         })
     }
 
+    /// Submissions that were put aside: the oldest ones.
+    ///
+    /// # Errors
+    /// The server does not answer.
+    pub async fn dead_letters(&self) -> Result<Vec<DeadLetter>, Error> {
+        let (mut all, mut from) = (Vec::new(), 1);
+        while all.len() < SHOWN_MAX {
+            let next = kept(&self.context, DEAD_LETTERS, Which::From(from, DEAD)).await?;
+            let Some(there) = next else { break };
+            from = there.sequence + 1;
+            let fields = fields(&there.header).unwrap_or_default();
+            let of = |name| {
+                let found = fields.iter().find(|(other, _)| *other == name);
+                found.map(|(_, value)| (*value).to_owned())
+            };
+            all.push(DeadLetter {
+                id: there.subject.trim_start_matches(DEAD).to_owned(),
+                what: of(TASK).zip(of(FILE)),
+                why: of(WHY).unwrap_or_default(),
+            });
+        }
+        Ok(all)
+    }
+
+    /// Which submissions workers have been given.
+    pub(crate) async fn given(&self) -> Result<Progress, Error> {
+        let info = self.submissions.consumer_info(WORKERS).await;
+        let info = info.map_err(|why| Error::asked("the state", why))?;
+        Ok(Progress {
+            done: info.ack_floor.stream_sequence,
+            last: info.delivered.stream_sequence,
+        })
+    }
+
+    /// The first submission from this place on.
+    pub(crate) async fn submission_from(&self, sequence: u64) -> Result<Option<Kept>, Error> {
+        kept(&self.context, SUBMISSIONS, Which::From(sequence, SUBMIT)).await
+    }
+
+    /// Takes a message away from submissions, whatever it is. Another worker may have done so.
+    pub(crate) async fn drop_submission(&self, sequence: u64) -> Result<(), Error> {
+        match self.submissions.delete_message(sequence).await {
+            Ok(_) => Ok(()),
+            Err(_) if !self.is_submission(sequence).await? => Ok(()),
+            Err(why) => Err(Error::asked("what is no submission", why)),
+        }
+    }
+
+    async fn is_submission(&self, sequence: u64) -> Result<bool, Error> {
+        let there = self.submission_from(sequence).await?;
+        Ok(there.is_some_and(|there| there.sequence == sequence))
+    }
+
     /// Whether submissions are there that the server gives to nobody: one that was killed can keep a submission and forget that it has
     /// to be given out.
     pub(crate) async fn has_forgotten(&self) -> Result<bool, Error> {
         let all = count(&self.submissions).await?;
         let info = self.submissions.consumer_info(WORKERS).await;
-        let info = info.map_err(|why| asked("the state", why))?;
+        let info = info.map_err(|why| Error::asked("the state", why))?;
         Ok(all > 0 && info.num_pending == 0 && info.num_ack_pending == 0)
     }
 
@@ -232,7 +301,25 @@ impl Queue {
             ..pull::Config::default()
         };
         let consumer = self.submissions.get_or_create_consumer(WORKERS, config);
-        consumer.await.map_err(|why| asked("submissions", why))
+        let consumer: PullConsumer = consumer
+            .await
+            .map_err(|why| Error::asked("submissions", why))?;
+        // One that somebody else has made would forget submissions, or give them to two.
+        let has = &consumer.cached_info().config;
+        let is_ours = has.ack_policy == AckPolicy::Explicit
+            && has.ack_wait == ACK_TIME
+            && has.max_deliver <= 0
+            && has.filter_subject.is_empty()
+            && !has.headers_only;
+        is_ours.then_some(consumer).ok_or(Error::Foreign(WORKERS))
+    }
+
+    /// Bytes that the server takes as a result.
+    pub(crate) fn result_bytes_max(&self) -> usize {
+        /// A header is counted too.
+        const HEADER_BYTES: usize = 1 << 10;
+        let most = self.client.server_info().max_payload;
+        most.saturating_sub(HEADER_BYTES)
     }
 
     /// Tells a result. False: there was one.
@@ -241,14 +328,15 @@ impl Queue {
         self.put(RESULT, id, HeaderMap::new(), result).await
     }
 
-    /// Puts a submission aside that nobody can judge.
+    /// Puts something aside that nobody can judge. Of its header only what is ours goes on: the server would do as the rest says.
     pub(crate) async fn bury(
         &self,
         id: &str,
-        mut headers: HeaderMap,
+        submission: Option<&Submission>,
         bytes: Vec<u8>,
         why: &str,
     ) -> Result<bool, Error> {
+        let mut headers = submission.map_or_else(HeaderMap::new, Submission::headers);
         // A header is one line.
         let why: String = why
             .chars()
@@ -256,6 +344,17 @@ impl Queue {
             .collect();
         headers.insert(WHY, why.as_str());
         self.put(DEAD, id, headers, bytes).await
+    }
+
+    /// Takes what a stream has of a subject away, if there is something.
+    async fn forget(&self, stream: &Stream, subject: &str) -> Result<(), Error> {
+        let name = &stream.cached_info().config.name;
+        let Some(there) = kept(&self.context, name, Which::Newest(subject)).await? else {
+            return Ok(());
+        };
+        let gone = stream.delete_message(there.sequence).await;
+        gone.map(drop)
+            .map_err(|why| Error::asked("what was put aside", why))
     }
 
     /// Puts the first message of a subject. False: there was one.
@@ -286,39 +385,60 @@ impl Queue {
                 | PublishErrorKind::TimedOut
                 | PublishErrorKind::BrokenPipe
                 | PublishErrorKind::MaxAckPending
-                | PublishErrorKind::Other => Err(asked("a message", why)),
+                | PublishErrorKind::Other => Err(Error::asked("a message", why)),
             },
         }
     }
 }
 
-/// Whether a result is that of a submission which was put aside.
-fn is_dead(result: &str) -> bool {
-    let result = serde_json::from_str::<serde_json::Value>(result);
-    result.is_ok_and(|result| !result["dead"].is_null())
-}
-
-/// Takes what a stream has of a subject away, if there is something.
-async fn forget(stream: &Stream, subject: &str) -> Result<(), Error> {
-    match stream.get_last_raw_message_by_subject(subject).await {
-        Ok(message) => {
-            let gone = stream.delete_message(message.sequence).await;
-            gone.map(drop)
-                .map_err(|why| asked("what was put aside", why))
-        }
-        Err(why) if why.kind() == LastRawMessageErrorKind::NoMessageFound => Ok(()),
-        Err(why) => Err(asked("what was put aside", why)),
+/// Connects, and counts how often the connection is lost.
+async fn connect(
+    settings: &Settings,
+    tell: impl Fn(bool) + Send + Sync + 'static,
+) -> Result<(Client, watch::Receiver<u32>), Error> {
+    let tell = Arc::new(tell);
+    let (lost, losses) = watch::channel(0);
+    let lost = Arc::new(lost);
+    let mut options = ConnectOptions::new()
+        .name(&settings.name)
+        .request_timeout(Some(ANSWER_TIME))
+        .reconnect_delay_callback(|_| REACH_TIME)
+        .event_callback(move |event| {
+            let is_there = match event {
+                Event::Connected => Some(true),
+                Event::Disconnected => Some(false),
+                Event::LameDuckMode
+                | Event::Draining
+                | Event::Closed
+                | Event::SlowConsumer(_)
+                | Event::ServerError(_)
+                | Event::ClientError(_) => None,
+            };
+            let (tell, lost) = (tell.clone(), lost.clone());
+            async move {
+                if let Some(is_there) = is_there {
+                    tell(is_there);
+                }
+                if is_there == Some(false) {
+                    lost.send_modify(|count: &mut u32| *count = count.wrapping_add(1));
+                }
+            }
+        });
+    if let Some((user, password)) = &settings.login {
+        options = options.user_and_password(user.clone(), password.clone());
     }
+    if let Some(path) = &settings.authority {
+        options = options.add_root_certificates(path.clone());
+    }
+    let servers: Vec<&str> = settings.server.split(',').map(str::trim).collect();
+    let client = options.connect(&servers[..]).await;
+    let client = client.map_err(|why| Error::Reach(settings.server.clone(), why.to_string()))?;
+    Ok((client, losses))
 }
 
 /// How much a stream has.
 async fn count(stream: &Stream) -> Result<u64, Error> {
     let info = stream.get_info().await;
     info.map(|info| info.state.messages)
-        .map_err(|why| asked("the state", why))
-}
-
-/// What the server says, as an error.
-pub(crate) fn asked(what: &'static str, why: impl Display) -> Error {
-    Error::Asked(what, why.to_string())
+        .map_err(|why| Error::asked("the state", why))
 }

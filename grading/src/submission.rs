@@ -3,8 +3,9 @@
 //! Owns its form as a message. Two that are the same have the same id, so that nothing is judged twice.
 
 use crate::error::Error;
-use crate::limits::{NAME_CHARS_MAX, SUBMISSION_BYTES_MAX};
-use crate::names::{FILE, TASK};
+use crate::kept::{Kept, fields};
+use crate::limits::{NAME_BYTES_MAX, SUBMISSION_BYTES_MAX};
+use crate::names::{FILE, SUBMIT, TASK};
 use async_nats::{HeaderMap, Message};
 use ring::digest::{Context, SHA256};
 use std::fmt::Write;
@@ -41,16 +42,39 @@ impl Submission {
     /// As a message has it.
     ///
     /// # Errors
-    /// A header is missing, or what [`Submission::new`] says.
+    /// A header is missing, it stands under the subject of another one, or what [`Submission::new`] says.
     pub fn read(message: &Message) -> Result<Self, Error> {
         let header = |name| {
             let headers = message.headers.as_ref();
             let value = headers.and_then(|headers| headers.get(name));
-            value
-                .map(|value| value.as_str())
-                .ok_or(Error::NoHeader(name))
+            value.map(|value| value.as_str())
         };
-        Self::new(header(TASK)?, header(FILE)?, message.payload.to_vec())
+        Self::of(&message.subject, header, &message.payload)
+    }
+
+    /// As the server keeps it.
+    ///
+    /// # Errors
+    /// A header that nobody can read, or what [`Submission::read`] says.
+    pub fn kept(message: &Kept) -> Result<Self, Error> {
+        let all = fields(&message.header).ok_or(Error::Unreadable)?;
+        let header = |name| {
+            let mut all = all.iter();
+            all.find(|(other, _)| *other == name)
+                .map(|(_, value)| *value)
+        };
+        Self::of(&message.subject, header, &message.bytes)
+    }
+
+    fn of<'a>(
+        subject: &str,
+        header: impl Fn(&'static str) -> Option<&'a str>,
+        bytes: &[u8],
+    ) -> Result<Self, Error> {
+        let must = |name| header(name).ok_or(Error::NoHeader(name));
+        let submission = Self::new(must(TASK)?, must(FILE)?, bytes.to_vec())?;
+        let is_its = subject.strip_prefix(SUBMIT) == Some(&*submission.id());
+        is_its.then_some(submission).ok_or(Error::Place)
     }
 
     /// The headers of its message; the bytes are its payload.
@@ -89,9 +113,14 @@ impl Submission {
     }
 }
 
-/// The id of a message that is no submission, so that it can be told of.
-pub fn id_of_rubbish(message: &Message) -> String {
-    hex(ring::digest::digest(&SHA256, &message.payload).as_ref())
+/// The id of a message that is no submission, so that it can be told of. No submission can have it: there the task comes first, and
+/// none is empty.
+pub fn id_of_rubbish(subject: &str, bytes: &[u8]) -> String {
+    let mut all = Context::new(&SHA256);
+    for part in [&[0], subject.as_bytes(), &[0], bytes] {
+        all.update(part);
+    }
+    hex(all.finish().as_ref())
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -106,7 +135,7 @@ fn hex(bytes: &[u8]) -> String {
 /// A header takes no control characters, and a file is below no other folder.
 fn is_name(name: &str) -> bool {
     let has_wrong = name.contains(|letter: char| letter == '/' || letter.is_control());
-    (1..=NAME_CHARS_MAX).contains(&name.chars().count())
+    (1..=NAME_BYTES_MAX).contains(&name.len())
         && !has_wrong
         && !name.starts_with('.')
         && name.trim() == name
@@ -138,7 +167,10 @@ mod tests {
         for name in ["line", "a b.qrs", "\u{43b}\u{438}\u{43d}\u{438}\u{44f}.js"] {
             assert!(Submission::new(name, name, Vec::new()).is_ok(), "{name}");
         }
-        let long = "a".repeat(NAME_CHARS_MAX + 1);
+        // 254 bytes, and 256.
+        let long = "\u{44f}".repeat(NAME_BYTES_MAX / 2);
+        assert!(Submission::new(&long, &long, Vec::new()).is_ok());
+        let long = "\u{44f}".repeat(NAME_BYTES_MAX / 2 + 1);
         for name in [
             "", ".", "..", ".a", "a/b", "../a", "a\nb", "a\0b", " a", "a ", &long,
         ] {
@@ -152,5 +184,45 @@ mod tests {
             refused,
             Error::TooLarge(SUBMISSION_BYTES_MAX + 1, SUBMISSION_BYTES_MAX)
         );
+    }
+
+    #[test]
+    fn what_stands_elsewhere_or_cannot_be_read_is_no_submission() {
+        let one = Submission::new("line", "a.js", b"x".to_vec()).unwrap();
+        let header = b"NATS/1.0\r\nTrik-File: a.js\r\nTrik-Task: line\r\n\r\n";
+        let kept = |subject: String, header: &[u8]| {
+            let (header, bytes) = (header.to_vec(), b"x".to_vec());
+            let kept = Kept {
+                subject,
+                header,
+                bytes,
+                ..Kept::default()
+            };
+            Submission::kept(&kept)
+        };
+        let id = one.id();
+        assert_eq!(kept(format!("{SUBMIT}{id}"), header), Ok(one));
+        let other = id_of_rubbish(&format!("{SUBMIT}{id}"), b"x");
+        for elsewhere in [String::new(), SUBMIT.to_owned(), format!("{SUBMIT}{other}")] {
+            assert_eq!(kept(elsewhere, header), Err(Error::Place));
+        }
+        let status = b"NATS/1.0 404\r\nTrik-File: a.js\r\nTrik-Task: line\r\n\r\n";
+        assert_eq!(
+            kept(format!("{SUBMIT}{id}"), status),
+            Err(Error::Unreadable)
+        );
+        assert_eq!(
+            kept(format!("{SUBMIT}{id}"), b""),
+            Err(Error::NoHeader(TASK))
+        );
+    }
+
+    #[test]
+    fn nothing_that_is_no_submission_has_the_id_of_one() {
+        let one = Submission::new("line", "a.js", b"x".to_vec()).unwrap();
+        let same = b"line\0a.js\0x";
+        assert_ne!(one.id(), id_of_rubbish("", same));
+        assert_ne!(one.id(), id_of_rubbish("line\0a.js", b"x"));
+        assert_ne!(id_of_rubbish("a", b"x"), id_of_rubbish("b", b"x"));
     }
 }

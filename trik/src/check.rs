@@ -13,6 +13,8 @@ pub(crate) mod grader;
 mod grades;
 mod jobs;
 mod live;
+#[cfg(feature = "nats")]
+mod lodging;
 pub(crate) mod original;
 mod page_args;
 mod platform;

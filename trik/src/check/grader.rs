@@ -6,6 +6,7 @@ use super::args::CheckArgs;
 use super::class::{self, Task};
 use super::confine;
 use super::jobs::{Job, shown};
+use super::lodging::{self, readable};
 use super::pool::{Slot, broken};
 use super::row::Row;
 use super::script::Language;
@@ -18,8 +19,7 @@ use grading::{Judge, Judged, Submission};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::fs::{self, Permissions};
-use std::os::unix::fs::PermissionsExt;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studio::verdict::Verdict;
@@ -30,6 +30,8 @@ struct Room {
     args: CheckArgs,
     tasks: BTreeMap<String, Task>,
     folder: TempDir,
+    /// For as long as it is held nobody takes the folder away.
+    _claim: File,
 }
 
 /// Judges one submission at a time, in a process of its own.
@@ -80,9 +82,7 @@ pub(crate) fn graders(
     let told = passed.told.iter();
     let told = told.map(|(path, reason)| words::passed(&named(path), reason, args.language));
     say(&told.map(|line| format!("trik: {line}")).collect::<Vec<_>>());
-    let folder = tempfile::Builder::new().prefix("trik-grade-").tempdir();
-    let folder = folder.map_err(place)?;
-    readable(folder.path()).map_err(place)?;
+    let (folder, claim) = lodging::new().map_err(place)?;
     // What the sandbox of Python lacks is told once, and not for each submission.
     let any = Job {
         solution: folder.path().join("any.py"),
@@ -98,6 +98,7 @@ pub(crate) fn graders(
         args,
         tasks: tasks.map(|task| (task.name.clone(), task)).collect(),
         folder,
+        _claim: claim,
     });
     let grader = |number: u16| Grader {
         slot: Slot::new(&room.args),
@@ -109,11 +110,6 @@ pub(crate) fn graders(
 
 fn place(error: std::io::Error) -> Error {
     Error::system("a folder for submissions", error)
-}
-
-/// A program of a submission may be another user.
-fn readable(folder: &Path) -> std::io::Result<()> {
-    fs::set_permissions(folder, Permissions::from_mode(0o755))
 }
 
 impl Judge for Grader {

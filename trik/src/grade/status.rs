@@ -7,8 +7,9 @@ use super::way::with;
 use crate::error::Error;
 use crate::output::standard;
 use crate::refusal::Refusal;
+use crate::terminal::harmless;
 use bridge::http::{Served, serve};
-use grading::{Ends, State, watch};
+use grading::{DeadLetter, Ends, Look, State, watch};
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -19,13 +20,13 @@ use std::time::Instant;
 /// The server is not reached, or nobody can listen there.
 pub fn status(args: &StatusArgs) -> Result<u8, Refusal> {
     with(&args.server, "grade-status", async |queue| {
-        let state = queue.state().await?;
+        let look = Look::at(&queue).await?;
         if !args.page {
-            standard(lines(state).as_bytes())?;
+            standard(lines(&look).as_bytes())?;
             return Ok(0);
         }
         let mut ends = Ends::new()?;
-        let shown = Arc::new(Mutex::new(page(state, None, true)));
+        let shown = Arc::new(Mutex::new(page(&look, None, true)));
         let text = shown.clone();
         let address = SocketAddr::new(args.address, args.port);
         let served = Served {
@@ -37,16 +38,16 @@ pub fn status(args: &StatusArgs) -> Result<u8, Refusal> {
         standard(
             format!("the queue, in a browser: http://{address}/\nCtrl-C ends it\n").as_bytes(),
         )?;
-        let (mut last, mut at) = (state, Instant::now());
-        let tell = |now: Option<State>| {
+        let (mut last, mut at) = (look, Instant::now());
+        let tell = |now: Option<Look>| {
             let text = match now {
                 Some(now) => {
                     let seconds = at.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
-                    let rate = now.judged.saturating_sub(last.judged) as f64 / seconds;
+                    let count = now.state.judged.saturating_sub(last.state.judged);
                     (last, at) = (now, Instant::now());
-                    page(now, Some(rate), true)
+                    page(&last, Some(count as f64 / seconds), true)
                 }
-                None => page(last, None, false),
+                None => page(&last, None, false),
             };
             *shown.lock().unwrap_or_else(PoisonError::into_inner) = text;
         };
@@ -71,14 +72,50 @@ fn rows(state: State) -> [(&'static str, u64); 4] {
     ]
 }
 
-fn lines(state: State) -> String {
-    let rows = rows(state).into_iter();
-    rows.map(|(name, count)| format!("{name:<13} {count}\n"))
-        .collect()
+fn lines(look: &Look) -> String {
+    let rows = rows(look.state).into_iter();
+    let rows = rows.map(|(name, count)| format!("{name:<13} {count}\n"));
+    let dead = look.dead.iter();
+    let dead = dead.map(|one| format!("  {}: {}\n", harmless(&what(one)), harmless(&one.why)));
+    rows.chain(dead).chain(more(look)).collect()
 }
 
-fn page(state: State, rate: Option<f64>, is_there: bool) -> String {
-    let rows: String = rows(state)
+/// What was put aside, for a person.
+fn what(one: &DeadLetter) -> String {
+    match &one.what {
+        Some((task, file)) => format!("{task}, {file}"),
+        None => format!("no submission, {}", one.id),
+    }
+}
+
+/// That not all of what was put aside is shown.
+fn more(look: &Look) -> Option<String> {
+    let count = look.state.dead.saturating_sub(look.dead.len() as u64);
+    (count > 0).then(|| format!("  and {count} more\n"))
+}
+
+/// What was put aside, as a table.
+fn table(look: &Look) -> String {
+    if look.dead.is_empty() {
+        return String::new();
+    }
+    let row = |one: &DeadLetter| {
+        let (what, why) = (escaped(&harmless(&what(one))), escaped(&harmless(&one.why)));
+        format!("<tr><th scope=\"row\">{what}</th><td class=\"why\">{why}</td></tr>")
+    };
+    let rows: String = look.dead.iter().map(row).collect();
+    let more = more(look).unwrap_or_default();
+    format!("<h2>Put aside</h2><table>{rows}</table><p>{more}</p>")
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn page(look: &Look, rate: Option<f64>, is_there: bool) -> String {
+    let table = table(look);
+    let rows: String = rows(look.state)
         .into_iter()
         .map(|(name, count)| format!("<tr><th scope=\"row\">{name}</th><td>{count}</td></tr>"))
         .collect();
@@ -93,7 +130,7 @@ fn page(state: State, rate: Option<f64>, is_there: bool) -> String {
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\">\
          <meta name=\"viewport\" content=\"width=device-width\"><title>TRIK queue</title>\
          <style>:root{{color-scheme:light dark;font-family:system-ui}}th{{text-align:left;padding-right:2rem}}\
-         td{{text-align:right;font-variant-numeric:tabular-nums}}</style>\
-         <main><h1>Queue</h1>{gone}<table>{rows}</table>{rate}</main></html>"
+         td{{text-align:right;font-variant-numeric:tabular-nums}}.why{{text-align:left;overflow-wrap:anywhere}}</style>\
+         <main><h1>Queue</h1>{gone}<table>{rows}</table>{rate}{table}</main></html>"
     )
 }

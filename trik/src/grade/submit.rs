@@ -8,12 +8,12 @@ use crate::error::Error;
 use crate::input;
 use crate::input::words::{A_FILE, why};
 use crate::output::standard;
-use crate::refusal::{REFUSED, Refusal, UNREADABLE};
+use crate::refusal::{REFUSED, Refusal, UNREADABLE, say};
 use crate::terminal::named;
 use grading::queue::Receipt;
-use grading::{Ends, Submission, Waiter, limits};
+use grading::{Ends, Outcome, Submission, Waiter, limits};
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::path::Path;
@@ -32,7 +32,9 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
         // Before anything is handed in, so that none is missed.
         let waiter = Waiter::new(&queue).await?;
         let mut ends = Ends::new()?;
-        let mut missing: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
+        let mut files: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
+        let mut missing: BTreeMap<String, &Submission> = BTreeMap::new();
+        let mut code = 0;
         for (file, submission) in &all {
             let receipt = queue.submit(submission).await;
             let receipt = receipt.map_err(|why| {
@@ -48,24 +50,39 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
                     Receipt::Taken => "taken",
                     Receipt::Waits => "waits",
                     Receipt::Judged => "judged",
+                    Receipt::Blocked => {
+                        say(&[format!(
+                            "trik: {}: something else is in its place in the queue, which a worker puts aside: hand it in again then",
+                            named(file)
+                        )]);
+                        code = UNREADABLE;
+                        "blocked"
+                    }
                 };
                 standard(format!("{id} {word} {}\n", named(file)).as_bytes())?;
             }
-            missing.entry(id).or_default().push(file);
+            files.entry(id.clone()).or_default().push(file);
+            missing.insert(id, submission);
         }
         if !args.wait {
-            return Ok(0);
+            return Ok(code);
         }
         let patience = args
             .timeout
             .map(|seconds| Duration::from_secs(seconds.into()));
-        let mut code = 0;
-        let ids: BTreeSet<String> = missing.keys().cloned().collect();
-        let told = |result: &str| {
-            code = code.max(tell(result, &missing)?);
+        let told = |id: &str, result: Result<Outcome, grading::Error>| {
+            let paths = files.get(id).map_or(&[][..], Vec::as_slice);
+            code = code.max(match result {
+                Ok(outcome) => tell(outcome, paths)?,
+                Err(why) => {
+                    let line = |path: &&Path| format!("trik: {}: {why}", named(path));
+                    say(&paths.iter().map(line).collect::<Vec<_>>());
+                    UNREADABLE
+                }
+            });
             Ok::<(), Refusal>(())
         };
-        match waiter.wait(ids, patience, &mut ends, told).await? {
+        match waiter.wait(missing, patience, &mut ends, told).await? {
             0 => Ok(code),
             count => Err(unfinished(count)),
         }
@@ -98,26 +115,22 @@ fn refused(path: &Path, why: impl Display) -> Refusal {
 }
 
 /// Prints a result, once for each file that it is of; the exit status that it has.
-fn tell(result: &str, files: &BTreeMap<String, Vec<&Path>>) -> Result<u8, Refusal> {
-    let Ok(mut result) = serde_json::from_str::<Value>(result) else {
-        return Ok(UNREADABLE);
-    };
-    let of = result["id"].as_str().and_then(|id| files.get(id));
-    for path in of.into_iter().flatten() {
-        result["path"] = path.to_string_lossy().into();
-        standard(format!("{result}\n").as_bytes())?;
-    }
-    let runs = result["runs"].as_array().map_or(&[][..], Vec::as_slice);
+fn tell(outcome: Outcome, paths: &[&Path]) -> Result<u8, Refusal> {
     let code = |run: &Value| match run["verdict"].as_str() {
         Some("accomplished" | "ended") => 0,
         Some("failed") => REFUSED,
         Some(_) | None => UNREADABLE,
     };
-    let worst = runs.iter().map(code).max().unwrap_or(UNREADABLE);
-    Ok(match result["dead"].is_null() {
-        true => worst,
-        false => UNREADABLE,
-    })
+    let worst = match outcome.dead() {
+        Some(_) => UNREADABLE,
+        None => outcome.runs().iter().map(code).max().unwrap_or(UNREADABLE),
+    };
+    let mut result = outcome.into_value();
+    for path in paths {
+        result["path"] = path.to_string_lossy().into();
+        standard(format!("{result}\n").as_bytes())?;
+    }
+    Ok(worst)
 }
 
 fn unfinished(count: usize) -> Refusal {

@@ -30,8 +30,10 @@ fn told() -> impl Fn(bool) + Send + Sync + 'static {
     move |now| {
         let before = is_there.swap(now, std::sync::atomic::Ordering::AcqRel);
         match (before, now) {
-            (true, false) => say(&["trik: the server is gone; it is tried again".to_owned()]),
-            (false, true) => say(&["trik: the server is back".to_owned()]),
+            (true, false) => {
+                say(&["trik: the connection to the server is lost; it is tried again".to_owned()])
+            }
+            (false, true) => say(&["trik: the connection to the server is back".to_owned()]),
             (true, true) | (false, false) => {}
         }
     }

@@ -9,7 +9,7 @@ use crate::check::grader::{Wanted, graders};
 use crate::output::standard;
 use crate::refusal::{Refusal, say};
 use crate::terminal::harmless;
-use grading::{Ends, Judge, News, worker};
+use grading::{Ends, Judge, News, Submission, worker};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::available_parallelism;
@@ -41,8 +41,10 @@ pub fn serve(args: &WorkerArgs) -> Result<u8, Refusal> {
         let judged = Arc::new(AtomicU32::new(0));
         let count = judged.clone();
         let tell = move |news| {
-            if matches!(news, News::Judged(_)) {
+            if let News::Judged(one) = &news {
                 count.fetch_add(1, Ordering::Relaxed);
+                // Results are told, also when nobody reads this.
+                let _ = standard(format!("{}: judged\n", what(one)).as_bytes());
             }
             say(&line(&news));
         };
@@ -62,20 +64,27 @@ fn host() -> String {
     }
 }
 
-/// What is told of a submission; of one that is judged nothing, for its result is.
+/// What a submission is, for a person.
+fn what(one: &Submission) -> String {
+    format!("{}, {}", harmless(one.task()), harmless(one.file()))
+}
+
+/// What is told of a submission beside what is judged.
 fn line(news: &News) -> Vec<String> {
     let line = match news {
         News::Judged(_) => return Vec::new(),
         News::Again(id) => format!("{id}: judged before"),
         News::Failed(one, why) => {
-            let (task, file) = (harmless(one.task()), harmless(one.file()));
-            format!("{task}, {file}: tried again, because {}", harmless(why))
+            format!("{}: tried again, because {}", what(one), harmless(why))
         }
-        News::Dead(id, why) => format!("{id}: put aside: {}", harmless(why)),
+        News::Dead(id, one, why) => {
+            let one = one.as_ref().map_or("no submission".to_owned(), what);
+            format!("{one}: put aside as {id}: {}", harmless(why))
+        }
         News::Ends => {
             "what is judged now is judged to its end; Ctrl-C again does not wait".to_owned()
         }
-        News::Server(why) => format!("{}; it is asked again", harmless(&why.to_string())),
+        News::Server(why) => harmless(&why.to_string()),
     };
     vec![format!("trik: {line}")]
 }

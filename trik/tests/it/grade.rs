@@ -11,7 +11,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -286,6 +286,162 @@ fn what_nobody_can_judge_is_put_aside_after_three_times_and_told() {
         "--wait",
     ]);
     assert_eq!(code, 0);
+}
+
+/// Publishes by the bytes of the protocol what no client would.
+struct Hostile(BufReader<TcpStream>);
+
+impl Hostile {
+    fn new(server: &Server) -> Self {
+        let mut stream = TcpStream::connect((&*server.ip, PORT)).unwrap();
+        stream
+            .write_all(b"CONNECT {\"verbose\":false,\"headers\":true,\"lang\":\"c\",\"version\":\"1\"}\r\n")
+            .unwrap();
+        Self(BufReader::new(stream))
+    }
+
+    /// A message, which the server has when this is over.
+    fn publish(&mut self, subject: &[u8], header: &[u8], payload: &[u8]) {
+        let sizes = match header.is_empty() {
+            true => format!(" {}\r\n", payload.len()),
+            false => format!(" {} {}\r\n", header.len(), header.len() + payload.len()),
+        };
+        let word: &[u8] = if header.is_empty() { b"PUB " } else { b"HPUB " };
+        let parts = [
+            word,
+            subject,
+            sizes.as_bytes(),
+            header,
+            payload,
+            b"\r\nPING\r\n",
+        ];
+        self.0.get_mut().write_all(&parts.concat()).unwrap();
+        loop {
+            let mut line = String::new();
+            self.0.read_line(&mut line).unwrap();
+            assert!(!line.starts_with("-ERR"), "{line}");
+            if line.starts_with("PONG") {
+                return;
+            }
+        }
+    }
+}
+
+const NAMED: &str = "Trik-Task: road\r\nTrik-File: a.js\r\n\r\n";
+
+/// Headers that harm clients, or servers when they are copied.
+fn hostile_headers() -> Vec<Vec<u8>> {
+    let mut all: Vec<Vec<u8>> = [
+        "NATS/1.0 404\r\n",
+        "NATS/1.0 408 Request Timeout\r\n",
+        "NATS/1.0 409 Message Size Exceeds MaxBytes\r\n",
+        "NATS/1.0 100 Idle Heartbeat\r\n",
+        "NATS/1.0 503\r\n",
+        "NATS/1.0 4x4\r\n",
+        "NATS/1.0\n",
+        "NATS/1.0\r\nno colon\r\n",
+        "NATS/1.0\r\nA: b\nno colon\r\n",
+        "HTTP/1.1\r\n",
+        "\r\n",
+        "NATS/1.0\r\nNats-Expected-Stream: TRIK_GRADE\r\n",
+    ]
+    .into_iter()
+    .map(|begin| format!("{begin}{NAMED}").into_bytes())
+    .collect();
+    all.push(b"NATS/1.0\r\nTrik-Task: \xff\xfe\r\n\r\n".to_vec());
+    all.push(b"no header".to_vec());
+    all.push(Vec::new());
+    all
+}
+
+#[test]
+fn what_harms_clients_is_put_aside_and_holds_nobody_up() {
+    let Some(server) = Server::new() else { return };
+    // The first command makes the streams.
+    assert_eq!(server.state(), Some([0, 0, 0, 0]));
+    let mut hostile = Hostile::new(&server);
+    let headers = hostile_headers();
+    for (number, header) in headers.iter().enumerate() {
+        let subject = format!("trik.grade.submit.{number}");
+        hostile.publish(subject.as_bytes(), header, b"print(1)");
+    }
+    hostile.publish(b"trik.grade.submit.\xff\xfe", b"", b"x");
+    let count = headers.len() as u64 + 1;
+    assert_eq!(server.state(), Some([count, 0, 0, 0]));
+    let mut files = Vec::new();
+    for number in 0..6 {
+        files.push(server.program(&format!("{number}.js"), "made/solution.js", number));
+    }
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let words = [&["grade-submit", "--task", "road", "--wait"][..], &files].concat();
+    let worker = server.worker(&["--jobs", "2"]);
+    let (code, text) = server.trik(&words);
+    assert_eq!((code, results(&text).len()), (0, 6), "{text}");
+    eventually("all are done", || server.state() == Some([0, 0, 6, count]));
+    // While it works, in between.
+    for (number, header) in headers.iter().enumerate() {
+        let subject = format!("trik.grade.submit.again{number}");
+        hostile.publish(subject.as_bytes(), header, b"print(1)");
+    }
+    let more = server.program("more.js", "made/solution.js", 99);
+    let words = ["grade-submit", "--task", "road", "--wait", &more];
+    let (code, text) = server.trik(&words);
+    assert_eq!(code, 0, "{text}");
+    let count = count + headers.len() as u64;
+    eventually("all are done again", || {
+        server.state() == Some([0, 0, 7, count])
+    });
+    // None was tried again: each was known for what it is.
+    assert!(
+        !worker.said().contains("tried again, because"),
+        "{}",
+        worker.said()
+    );
+    let (_, text) = server.trik(&["grade-status"]);
+    assert!(text.contains("a header that no client can read"), "{text}");
+    assert!(text.contains("does not end with the id"), "{text}");
+    assert!(text.contains("no header Trik-Task"), "{text}");
+    assert!(text.contains("and 11 more"), "{text}");
+}
+
+#[test]
+fn what_somebody_puts_in_the_place_of_a_submission_or_of_its_result_takes_nothing_from_it() {
+    let Some(server) = Server::new() else { return };
+    fs::copy(
+        server.place.path("made/solution.js"),
+        server.place.path("b.js"),
+    )
+    .unwrap();
+    let words = ["grade-submit", "b.js", "--task", "road"];
+    let (_, text) = server.trik(&words);
+    let other = text.split(' ').next().unwrap().to_owned();
+    // Somebody else knows it before.
+    let mut hostile = Hostile::new(&server);
+    hostile.publish(b"$JS.API.STREAM.PURGE.TRIK_GRADE answer", b"", b"");
+    assert_eq!(server.state(), Some([0, 0, 0, 0]));
+    let subject = format!("trik.grade.submit.{other}");
+    let header = format!("NATS/1.0\r\n{NAMED}");
+    hostile.publish(subject.as_bytes(), header.as_bytes(), b"print(1)");
+    hostile.publish(
+        format!("trik.grade.result.{other}").as_bytes(),
+        b"",
+        b"\x1b[2J no result",
+    );
+    let (code, text) = server.trik(&words);
+    assert_eq!((code, &*text), (2, &*format!("{other} blocked b.js\n")));
+    let _worker = server.worker(&[]);
+    eventually("it is put aside", || {
+        server.state().is_some_and(|state| state[3] == 1)
+    });
+    let (code, text) = server.trik(&[&words[..], &["--wait"]].concat());
+    assert_eq!(code, 0, "{text}");
+    let [result] = &results(&text)[..] else {
+        panic!("{text}")
+    };
+    assert_eq!(
+        (&result["id"], &result["file"]),
+        (&other.into(), &"b.js".into())
+    );
 }
 
 #[test]
