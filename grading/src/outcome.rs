@@ -67,7 +67,7 @@ impl Draft<'_> {
         }
         let mut short = self.runs.to_vec();
         for field in short.iter_mut().filter_map(Value::as_object_mut) {
-            for name in ["messages", "printed", "explain"] {
+            for name in ["messages", "printed", "explain", "report"] {
                 field.remove(name);
             }
             field.insert("shortened".to_owned(), Value::Bool(true));

@@ -146,6 +146,9 @@ pub const ROW_BYTES_MAX: usize = 4 << 20;
 pub const SWEEPS: usize = 100;
 /// Warnings of one world that are told.
 pub const ROW_WARNINGS_MAX: usize = 20;
+/// Bytes of the report of a run that a result of a queue has.
+#[cfg(feature = "nats")]
+pub const REPORT_BYTES_MAX: u64 = 256 << 10;
 /// Messages of one run that a line of results has.
 pub const ROW_MESSAGES_MAX: usize = 200;
 /// Characters of one of them.

@@ -131,6 +131,7 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
                 field: world.clone(),
                 log: None,
                 given: tasks[task].given.clone(),
+                inputs: world.as_deref().and_then(inputs_of),
                 name: jobs::free(&one.name, world.as_deref(), worlds.len() > 1, &mut names),
             });
         }
@@ -225,6 +226,16 @@ impl Plan {
     }
 }
 
+/// What programs read in a field of a task: a text beside it.
+pub(super) fn inputs_of(field: &Path) -> Option<PathBuf> {
+    Some(field.with_extension("txt")).filter(|path| path.is_file())
+}
+
+/// A text beside a field.
+fn is_inputs(path: &Path) -> bool {
+    path.extension() == Some(OsStr::new("txt")) && path.with_extension("xml").is_file()
+}
+
 /// The tasks of a folder: `NAME.xml` and folders of such files are fields, `NAME.qrs` is what was given out.
 ///
 /// # Errors
@@ -252,7 +263,9 @@ pub(super) fn tasks(
         let worlds: Vec<Option<PathBuf>> = match ending {
             _ if is_folder && !name.starts_with('.') => {
                 let walk = walk::below(&path, &["xml"], 1, limits::FIELDS_MAX)?;
-                passed.extend(walk.passed);
+                let mut others = walk.passed;
+                others.drop_if(is_inputs);
+                passed.extend(others);
                 let found = walk.found.into_iter();
                 found.map(|(field, _)| Some(field)).collect()
             }
@@ -262,7 +275,9 @@ pub(super) fn tasks(
                 continue;
             }
             Some(_) | None => {
-                passed.note(path, Reason::NoTaskFile);
+                if !is_inputs(&path) {
+                    passed.note(path, Reason::NoTaskFile);
+                }
                 continue;
             }
         };

@@ -9,17 +9,20 @@ use super::jobs::{Job, shown};
 use super::lodging::{self, readable};
 use super::pool::{Slot, broken};
 use super::row::Row;
+use super::run::{REPORT, report};
 use super::script::Language;
 use super::walk::Passed;
 use super::words;
 use crate::error::Error;
 use crate::refusal::{Refusal, say};
 use crate::terminal::named;
+use crate::{input, limits};
 use grading::{Judge, Judged, Submission};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::fs::{self, File};
+use std::fs::{self, DirBuilder, File};
+use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studio::verdict::Verdict;
@@ -40,6 +43,8 @@ pub(crate) struct Grader {
     slot: Slot,
     /// Where its submissions are.
     folder: PathBuf,
+    /// Which one it is.
+    number: u16,
 }
 
 /// What a worker judges, and how.
@@ -77,18 +82,26 @@ pub(crate) fn graders(
         ..CheckArgs::plain()
     };
     args.sandbox.require_sandbox = wanted.require_sandbox;
+    args.force = true;
     let mut passed = Passed::default();
     let tasks = class::tasks(wanted.tasks, &args, &mut passed)?;
     let told = passed.told.iter();
     let told = told.map(|(path, reason)| words::passed(&named(path), reason, args.language));
     say(&told.map(|line| format!("trik: {line}")).collect::<Vec<_>>());
     let (folder, claim) = lodging::new().map_err(place)?;
+    let reports = folder.path().join("reports");
+    DirBuilder::new()
+        .mode(0o700)
+        .create(&reports)
+        .map_err(place)?;
+    args.report = Some(reports);
     // What the sandbox of Python lacks is told once, and not for each submission.
     let any = Job {
         solution: folder.path().join("any.py"),
         field: None,
         log: None,
         given: None,
+        inputs: None,
         name: PathBuf::new(),
     };
     let args = confine::settle(&[any], &args)?;
@@ -103,6 +116,7 @@ pub(crate) fn graders(
     let grader = |number: u16| Grader {
         slot: Slot::new(&room.args),
         folder: room.folder.path().join(number.to_string()),
+        number,
         room: room.clone(),
     };
     Ok(((0..count).map(grader).collect(), names))
@@ -153,6 +167,15 @@ impl Grader {
         row
     }
 
+    /// What the run has left as its report, which is not there for the next one. None if it is too large for a result.
+    fn report(&self, job: &Job) -> Option<String> {
+        let path = job.place(self.room.args.report.as_deref()?, REPORT, false);
+        let text = input::read(&path, limits::REPORT_BYTES_MAX);
+        // What cannot be removed is written over.
+        let _ = fs::remove_file(&path);
+        String::from_utf8(text.ok()?).ok()
+    }
+
     /// Runs it in each world of its task.
     fn runs(&mut self, path: &Path, task: &Task, submission: &Submission) -> Judged {
         let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
@@ -168,16 +191,24 @@ impl Grader {
                 field: world.clone(),
                 log: None,
                 given: task.given.clone(),
-                name: PathBuf::from(submission.file()),
+                inputs: world.as_deref().and_then(class::inputs_of),
+                name: PathBuf::from(self.number.to_string()),
             };
             let args = &self.room.args;
             let row = self.slot.row(&job, args);
-            let row = row.unwrap_or_else(|why| broken(&job, args, &why));
+            let row = row.unwrap_or_else(|why| {
+                let mut row = broken(&job, args, &why);
+                let said = row.messages.clone();
+                report(&job, args, &mut row, &said);
+                row
+            });
             let row = self.told(row);
             if row.verdict == Verdict::NotRun {
                 failed.get_or_insert_with(|| row.why().to_owned());
             }
-            rows.push(value(row, submission));
+            let mut value = value(row, submission);
+            value["report"] = self.report(&job).into();
+            rows.push(value);
         }
         match failed {
             None => Judged::Done(rows),

@@ -25,6 +25,8 @@ pub(super) struct Job {
     pub log: Option<PathBuf>,
     /// The save that pupils were given for this task, if not that of all runs.
     pub given: Option<PathBuf>,
+    /// Lines for programs that read, if not those of all runs.
+    pub inputs: Option<PathBuf>,
     /// What files of this run are called, below a directory for results and without an ending.
     pub name: PathBuf,
 }
@@ -82,6 +84,7 @@ pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, Error> {
                 field: field.clone(),
                 log: None,
                 given: None,
+                inputs: None,
                 name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
             });
         }
@@ -219,6 +222,7 @@ fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, Er
                 field: field.clone(),
                 log: Some(log.clone()),
                 given: None,
+                inputs: None,
                 name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
             }));
         }

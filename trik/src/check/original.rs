@@ -214,6 +214,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
         field: None,
         log: None,
         given: None,
+        inputs: None,
         name: PathBuf::new(),
     };
     let is_input_there = named(&args.input).is_none_or(|path| path.exists());

@@ -264,7 +264,8 @@ impl Worker {
         let mut bytes = Vec::new();
         let path = |path: &'_ Option<PathBuf>| path.clone().unwrap_or_default();
         let (field, log, given) = (path(&job.field), path(&job.log), path(&job.given));
-        for path in [&job.solution, &field, &log, &given, &job.name] {
+        let inputs = path(&job.inputs);
+        for path in [&job.solution, &field, &log, &given, &inputs, &job.name] {
             bytes.extend_from_slice(path.as_os_str().as_bytes());
             bytes.push(0);
         }

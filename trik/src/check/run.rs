@@ -168,7 +168,7 @@ fn judged(
     args: &CheckArgs,
     report_phase: &mut dyn FnMut(Phase),
 ) -> Result<(Task, Outcome, Lines), Refused> {
-    let settings = settings(args).map_err(line)?;
+    let settings = settings(job, args).map_err(line)?;
     let mut solution = match &job.log {
         Some(log) if *log == job.solution => Solution::default(),
         _ => Solution::read(&job.solution, args)?,
@@ -235,8 +235,8 @@ fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines>
     Ok(changed.map(str::to_owned).collect())
 }
 
-pub(super) fn settings(args: &CheckArgs) -> Result<Settings, Error> {
-    let answers = match &args.inputs {
+pub(super) fn settings(job: &Job, args: &CheckArgs) -> Result<Settings, Error> {
+    let answers = match job.inputs.as_ref().or(args.inputs.as_ref()) {
         None => Vec::new(),
         Some(path) => text(path, limits::WORLD_BYTES_MAX, args.language)?
             .lines()

@@ -62,7 +62,7 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
         let settings = Settings {
             // A person thinks.
             longest: Duration::MAX,
-            ..settings(args).map_err(line)?
+            ..settings(job, args).map_err(line)?
         };
         let mut solution = Solution::read(&job.solution, args)?;
         if solution.script.is_some() {

@@ -59,6 +59,13 @@ impl Passed {
         }
     }
 
+    /// What is told of and is of use after all.
+    pub fn drop_if(&mut self, is_of_use: impl Fn(&Path) -> bool) {
+        let before = self.told.len();
+        self.told.retain(|(path, _)| !is_of_use(path));
+        self.count -= before - self.told.len();
+    }
+
     /// What another walk has passed by comes after it.
     pub fn extend(&mut self, other: Self) {
         let room = limits::PASSED_MAX.saturating_sub(self.told.len());

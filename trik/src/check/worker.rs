@@ -103,7 +103,7 @@ fn guarded(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> 
 }
 
 fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
-    let mut parts: [Vec<u8>; 5] = Default::default();
+    let mut parts: [Vec<u8>; 6] = Default::default();
     for part in &mut parts {
         input
             .by_ref()
@@ -113,13 +113,14 @@ fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
             return Ok(None);
         }
     }
-    let [solution, field, log, given, name] =
+    let [solution, field, log, given, inputs, name] =
         parts.map(|part| PathBuf::from(OsString::from_vec(part)));
     Ok(Some(Job {
         solution,
         field: Some(field).filter(|field| !field.as_os_str().is_empty()),
         log: Some(log).filter(|log| !log.as_os_str().is_empty()),
         given: Some(given).filter(|given| !given.as_os_str().is_empty()),
+        inputs: Some(inputs).filter(|inputs| !inputs.as_os_str().is_empty()),
         name,
     }))
 }

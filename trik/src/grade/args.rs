@@ -76,6 +76,10 @@ pub(crate) struct SubmitArgs {
     /// Wait until all are judged, and print each result as a line of JSON.
     #[arg(long)]
     pub wait: bool,
+    /// With --wait, and one file: write the report of each run into this directory, as FIELD.json, in the form of TRIK
+    /// Studio's 2D-model.
+    #[arg(long, value_name = "DIR", requires = "wait")]
+    pub report: Option<PathBuf>,
     /// With --wait: for so many seconds at most.
     #[arg(long, value_name = "SECONDS", requires = "wait", value_parser = clap::value_parser!(u32).range(1..))]
     pub timeout: Option<u32>,

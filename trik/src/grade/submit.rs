@@ -7,11 +7,12 @@ use super::way::with;
 use crate::error::Error;
 use crate::input;
 use crate::input::words::{A_FILE, why};
-use crate::output::standard;
+use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal, UNREADABLE, say};
 use crate::terminal::named;
 use grading::queue::Receipt;
 use grading::{Ends, Outcome, Submission, Waiter, limits};
+use lang_text::problem::Locale;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -24,6 +25,10 @@ use std::time::Duration;
 /// # Errors
 /// A file cannot be read, or the server is not reached.
 pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
+    if let (Some(folder), true) = (&args.report, args.files.len() > 1) {
+        let why = "--report is for one file: those of several would have the same names";
+        return Err(refused(folder, why));
+    }
     let files = args.files.iter();
     let all: Vec<_> = files
         .map(|file| read(file, args).map(|submission| (file, submission)))
@@ -73,7 +78,7 @@ pub fn submit(args: &SubmitArgs) -> Result<u8, Refusal> {
         let told = |id: &str, result: Result<Outcome, grading::Error>| {
             let paths = files.get(id).map_or(&[][..], Vec::as_slice);
             code = code.max(match result {
-                Ok(outcome) => tell(outcome, paths)?,
+                Ok(outcome) => tell(outcome, paths, args)?,
                 Err(why) => {
                     let line = |path: &&Path| format!("trik: {}: {why}", named(path));
                     say(&paths.iter().map(line).collect::<Vec<_>>());
@@ -114,8 +119,8 @@ fn refused(path: &Path, why: impl Display) -> Refusal {
     }
 }
 
-/// Prints a result, once for each file that it is of; the exit status that it has.
-fn tell(outcome: Outcome, paths: &[&Path]) -> Result<u8, Refusal> {
+/// Prints a result, once for each file that it is of, and writes its reports; the exit status that it has.
+fn tell(outcome: Outcome, paths: &[&Path], args: &SubmitArgs) -> Result<u8, Refusal> {
     let code = |run: &Value| match run["verdict"].as_str() {
         Some("accomplished" | "ended") => 0,
         Some("failed") => REFUSED,
@@ -125,12 +130,39 @@ fn tell(outcome: Outcome, paths: &[&Path]) -> Result<u8, Refusal> {
         Some(_) => UNREADABLE,
         None => outcome.runs().iter().map(code).max().unwrap_or(UNREADABLE),
     };
+    if let (Some(folder), Some(file)) = (&args.report, args.files.first()) {
+        for run in outcome.runs() {
+            report(run, folder, file)?;
+        }
+    }
     let mut result = outcome.into_value();
     for path in paths {
         result["path"] = path.to_string_lossy().into();
         standard(format!("{result}\n").as_bytes())?;
     }
     Ok(worst)
+}
+
+/// Writes the report of a run, by the name of its field; without one by that of the file.
+fn report(run: &Value, folder: &Path, file: &Path) -> Result<(), Refusal> {
+    let field = run["field"].as_str().map(Path::new);
+    // A result is from elsewhere: a name has no folders.
+    let name = field.unwrap_or(file).file_stem().unwrap_or_default();
+    let mut name = name.to_owned();
+    name.push(".json");
+    let path = folder.join(name);
+    let Some(text) = run["report"].as_str() else {
+        return Err(refused(&path, "the result has no report: it was too large"));
+    };
+    let made = std::fs::create_dir_all(folder);
+    made.map_err(|error| Error::system(format!("{} cannot be made", named(folder)), error))?;
+    let output = Output {
+        path: Some(&path),
+        force: true,
+        source: file,
+        locale: Locale::English,
+    };
+    output.write(text.as_bytes())
 }
 
 fn unfinished(count: usize) -> Refusal {

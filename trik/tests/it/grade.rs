@@ -288,6 +288,89 @@ fn what_nobody_can_judge_is_put_aside_after_three_times_and_told() {
     assert_eq!(code, 0);
 }
 
+/// The exit status of the script of a grading service, and what it says.
+fn grade(place: &Board, server: &str, words: &[&str]) -> (Option<i32>, String) {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../grading/deploy/grade.sh");
+    let mut command = Command::new(script);
+    command.current_dir(place.path(".")).args(words);
+    command.env("TRIK", TRIK).env("TRIK_SERVER", server);
+    let output = command.output().expect("bash");
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), text)
+}
+
+#[test]
+fn the_script_of_a_grading_service_gets_the_reports_of_trik_check() {
+    let Some(server) = Server::new() else { return };
+    let of = |name: &str| server.place.path(name);
+    fs::create_dir_all(of("tasks/maze")).unwrap();
+    fs::create_dir_all(of("maze/fields")).unwrap();
+    for field in ["near.xml", "far.xml"] {
+        for folder in ["tasks/maze", "maze/fields"] {
+            fs::copy(of("made/world.xml"), of(folder).join(field)).unwrap();
+        }
+    }
+    // Programs read what is beside a field.
+    fs::write(of("tasks/maze/far.txt"), "seven\n").unwrap();
+    server.place.file("asks.py", "print('read', input())\n");
+    let worker = Running::new(&mut server.command(&["grade-worker", "--tasks", "tasks"]));
+    worker.says("at once: maze, road");
+    assert!(!worker.said().contains("far.txt"), "{}", worker.said());
+    for (mode, file) in [
+        ("js", "made/solution.js"),
+        ("js", "made/wrong.js"),
+        ("py", "asks.py"),
+    ] {
+        let _ = fs::remove_dir_all(of("results"));
+        let _ = fs::remove_dir_all(of("alone"));
+        fs::create_dir(of("results")).unwrap();
+        let words = ["--mode", mode, "--submission-file", file, "--image", "any"];
+        let more = [
+            "--fields-directory",
+            "maze/fields/",
+            "--result-directory",
+            "results",
+        ];
+        let (code, text) = grade(&server.place, &server.ip, &[&words[..], &more].concat());
+        assert_eq!(code, Some(0), "{text}");
+        for field in ["near", "far"] {
+            let world = format!("tasks/maze/{field}.xml");
+            let alone = format!("alone-{field}.json");
+            let mut words = vec![
+                "check", file, "--field", &world, "--report", &alone, "--force",
+            ];
+            if field == "far" {
+                words.extend(["--inputs", "tasks/maze/far.txt"]);
+            }
+            server.trik(&words);
+            let expected = fs::read_to_string(of(&alone)).unwrap();
+            let report = fs::read_to_string(of(&format!("results/{field}.json"))).unwrap();
+            assert_eq!(report, expected, "{file}: {field}");
+            assert!(report.starts_with("[\n{\"level\""), "{report}");
+        }
+    }
+    let words = ["grade-submit", "asks.py", "--task", "maze", "--wait"];
+    let text = server.trik(&words).1;
+    assert!(text.contains("\"printed\":[\"read seven\""), "{text}");
+}
+
+#[test]
+fn the_script_of_a_grading_service_says_what_is_wrong() {
+    let place = Board::new();
+    for (words, why) in [
+        (&["--mode", "exe"][..], "--mode is qrs, js or py, not 'exe'"),
+        (&["--mode"], "--mode needs a value"),
+        (&["--colour"], "unknown option --colour"),
+        (
+            &["--mode", "js", "--submission-file", "none.js"],
+            "there is no file 'none.js'",
+        ),
+    ] {
+        let (code, text) = grade(&place, "127.0.0.1", words);
+        assert_eq!((code, text.contains(why)), (Some(1), true), "{text}");
+    }
+}
+
 /// Publishes by the bytes of the protocol what no client would.
 struct Hostile(BufReader<TcpStream>);
 
