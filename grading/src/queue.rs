@@ -19,6 +19,7 @@ use async_nats::jetstream::{Context, context};
 use async_nats::{Client, ConnectOptions, Event, HeaderMap, Subscriber};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::watch;
 
 /// Where the server is, and who asks.
@@ -402,7 +403,11 @@ async fn connect(
     let mut options = ConnectOptions::new()
         .name(&settings.name)
         .request_timeout(Some(ANSWER_TIME))
-        .reconnect_delay_callback(|_| REACH_TIME)
+        // The first attempt waits for nothing.
+        .reconnect_delay_callback(|attempts| match attempts {
+            0 | 1 => Duration::ZERO,
+            _ => REACH_TIME,
+        })
         .event_callback(move |event| {
             let is_there = match event {
                 Event::Connected => Some(true),

@@ -1,7 +1,8 @@
 //! How many submissions of a queue workers judge, beside `trik check` with as many processes and the same files.
 //!
 //! `cargo bench -p trik --features nats --bench queue` where `nats-server` is installed; `QUEUE_COUNT` is how many submissions each
-//! round has (1000). The server and the commands that hand in and look have to share the processors with the workers, so two workers
+//! round has (1000). If you are root and `ip` is there, each worker has a network namespace of its own, as on a computer of its own,
+//! behind one bridge; else all share this one. The server and the commands that hand in and look have to share the processors with the workers, so two workers
 //! on two cores say what such a computer does, and not what a worker is worth on its own.
 
 use std::fs;
@@ -28,16 +29,82 @@ impl Drop for Running {
     }
 }
 
+/// Namespaces of workers behind a bridge; they go with it.
+struct Network;
+
+impl Network {
+    const BRIDGE: &str = "trikqueue";
+    const SERVER: &str = "10.203.0.1";
+
+    fn name(worker: usize) -> String {
+        format!("{}{worker}", Self::BRIDGE)
+    }
+
+    fn ip(line: &str) -> bool {
+        let mut command = Command::new("ip");
+        command.args(line.split(' ')).stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    }
+
+    /// None: the system does not let us.
+    fn new() -> Option<Self> {
+        let bridge = Self::BRIDGE;
+        let network = Self::ip(&format!("link add {bridge} type bridge")).then_some(Self)?;
+        let mut lines = vec![
+            format!("addr add {}/24 dev {bridge}", Self::SERVER),
+            format!("link set {bridge} up"),
+        ];
+        for worker in 0..WORKERS.into_iter().max().unwrap_or_default() {
+            let (name, end) = (Self::name(worker), format!("trikq{worker}"));
+            lines.extend([
+                format!("netns add {name}"),
+                format!("link add {end} type veth peer name eth0 netns {name}"),
+                format!("link set {end} master {bridge} up"),
+                format!("-n {name} addr add 10.203.0.{}/24 dev eth0", worker + 10),
+                format!("-n {name} link set eth0 up"),
+            ]);
+        }
+        lines.iter().all(|line| Self::ip(line)).then_some(network)
+    }
+}
+
+impl Drop for Network {
+    fn drop(&mut self) {
+        for worker in 0..WORKERS.into_iter().max().unwrap_or_default() {
+            Self::ip(&format!("netns del {}", Self::name(worker)));
+        }
+        Self::ip(&format!("link del {}", Self::BRIDGE));
+    }
+}
+
 /// A folder with a task, a server and its address.
 struct Place {
     folder: PathBuf,
     address: String,
+    network: Option<Network>,
     _server: Running,
 }
 
 impl Place {
     fn command(&self, words: &[&str]) -> Command {
-        let mut command = Command::new(TRIK);
+        self.set_up(Command::new(TRIK), words)
+    }
+
+    /// A worker, on a computer of its own if that can be.
+    fn worker(&self, number: usize) -> Running {
+        let command = match self.network {
+            Some(_) => {
+                let mut command = Command::new("ip");
+                command.args(["netns", "exec", &Network::name(number), TRIK]);
+                command
+            }
+            None => Command::new(TRIK),
+        };
+        let words = ["grade-worker", "--tasks", "tasks", "--jobs", "1"];
+        Running(self.set_up(command, &words).spawn().expect("trik"))
+    }
+
+    fn set_up(&self, mut command: Command, words: &[&str]) -> Command {
         command.current_dir(&self.folder).args(words);
         command.stdin(Stdio::null()).stdout(Stdio::null());
         command.stderr(Stdio::null());
@@ -73,10 +140,12 @@ impl Place {
 }
 
 fn place(folder: &Path) -> Option<Place> {
-    let free = TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr());
+    let network = Network::new();
+    let ip = network.as_ref().map_or("127.0.0.1", |_| Network::SERVER);
+    let free = TcpListener::bind((ip, 0)).and_then(|socket| socket.local_addr());
     let port = free.expect("a port").port();
     let server = Command::new(SERVER)
-        .args(["--jetstream", "--store_dir", "kept", "-a", "127.0.0.1"])
+        .args(["--jetstream", "--store_dir", "kept", "-a", ip])
         .args(["-p", &port.to_string()])
         .current_dir(folder)
         .stdout(Stdio::null())
@@ -84,13 +153,14 @@ fn place(folder: &Path) -> Option<Place> {
         .spawn()
         .ok()?;
     let server = Running(server);
-    let address = format!("127.0.0.1:{port}");
+    let address = format!("{ip}:{port}");
     while TcpStream::connect(&address).is_err() {
         std::thread::sleep(LOOK_TIME);
     }
     let place = Place {
         folder: folder.to_owned(),
         address,
+        network,
         _server: server,
     };
     let made = place.command(&["new-task", "made"]).status();
@@ -108,6 +178,13 @@ fn main() {
         println!("there is no {SERVER}: nothing is measured");
         return;
     };
+    println!(
+        "workers {}",
+        match place.network {
+            Some(_) => "in namespaces of their own",
+            None => "in this namespace: you are not root, or there is no ip",
+        }
+    );
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     for (round, workers) in WORKERS.into_iter().enumerate() {
         let files = place.files(round, count);
@@ -131,9 +208,7 @@ fn main() {
         assert!(sent.expect("trik").success());
         let sent_s = begin.elapsed().as_secs_f64();
         let begin = Instant::now();
-        let words = ["grade-worker", "--tasks", "tasks", "--jobs", "1"];
-        let start = |_| Running(place.command(&words).spawn().expect("trik"));
-        let running: Vec<Running> = (0..workers).map(start).collect();
+        let running: Vec<Running> = (0..workers).map(|number| place.worker(number)).collect();
         while place.judged() < before + count {
             std::thread::sleep(LOOK_TIME);
         }

@@ -94,18 +94,18 @@ fn more(look: &Look) -> Option<String> {
     (count > 0).then(|| format!("  and {count} more\n"))
 }
 
-/// What was put aside, as a table.
-fn table(look: &Look) -> String {
+/// What was put aside, as a list.
+fn list(look: &Look) -> String {
     if look.dead.is_empty() {
         return String::new();
     }
     let row = |one: &DeadLetter| {
         let (what, why) = (escaped(&harmless(&what(one))), escaped(&harmless(&one.why)));
-        format!("<tr><th scope=\"row\">{what}</th><td class=\"why\">{why}</td></tr>")
+        format!("<li><b>{what}</b>: {why}</li>")
     };
     let rows: String = look.dead.iter().map(row).collect();
     let more = more(look).unwrap_or_default();
-    format!("<h2>Put aside</h2><table>{rows}</table><p>{more}</p>")
+    format!("<h2>Put aside</h2><ul>{rows}</ul><p>{more}</p>")
 }
 
 fn escaped(text: &str) -> String {
@@ -114,7 +114,7 @@ fn escaped(text: &str) -> String {
 }
 
 fn page(look: &Look, rate: Option<f64>, is_there: bool) -> String {
-    let table = table(look);
+    let list = list(look);
     let rows: String = rows(look.state)
         .into_iter()
         .map(|(name, count)| format!("<tr><th scope=\"row\">{name}</th><td>{count}</td></tr>"))
@@ -130,7 +130,7 @@ fn page(look: &Look, rate: Option<f64>, is_there: bool) -> String {
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\">\
          <meta name=\"viewport\" content=\"width=device-width\"><title>TRIK queue</title>\
          <style>:root{{color-scheme:light dark;font-family:system-ui}}th{{text-align:left;padding-right:2rem}}\
-         td{{text-align:right;font-variant-numeric:tabular-nums}}.why{{text-align:left;overflow-wrap:anywhere}}</style>\
-         <main><h1>Queue</h1>{gone}<table>{rows}</table>{rate}{table}</main></html>"
+         td{{text-align:right;font-variant-numeric:tabular-nums}}li{{overflow-wrap:anywhere;margin-bottom:0.3rem}}</style>\
+         <main><h1>Queue</h1>{gone}<table>{rows}</table>{rate}{list}</main></html>"
     )
 }
